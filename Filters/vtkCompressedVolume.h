@@ -1,0 +1,200 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkCompressedVolume
+ * @brief   the metadata and the stream of a ZFP-compressed vtkImageData
+ *
+ * A compressed volume is a vtkImageData with the geometry of the original (extent, spacing, origin,
+ * direction matrix), without the compressed array, and with these arrays in its field data
+ * (version 1 of the format):
+ *
+ * | array                  | type               | content                                           |
+ * | ---------------------- | ------------------ | ------------------------------------------------- |
+ * | ProgIso.ZFP.Version    | int                | 1                                                 |
+ * | ProgIso.ZFP.Stream     | unsigned char      | fixed-rate zfp stream, see below                  |
+ * | ProgIso.ZFP.BlockBits  | int                | bits per block of 4x4x4 samples, 9..2048          |
+ * | ProgIso.ZFP.Dimensions | 64-bit integer [3] | samples per axis (points, or cells for cell data) |
+ * | ProgIso.ZFP.Range      | double [2]         | smallest and largest sample, as float32           |
+ * | ProgIso.ZFP.ScalarType | int                | VTK type of the original array                    |
+ * | ProgIso.ZFP.ArrayName  | string             | name of the original array                        |
+ * | ProgIso.ZFP.Component  | int                | component of the original array                   |
+ * | ProgIso.ZFP.Association| int                | 0 point data, 1 cell data                         |
+ *
+ * The stream is zfp's (codec 5) for a 3-D float32 array, without zfp's header: blocks in x-fastest
+ * order, block i at bit i*BlockBits (bits count from the least significant one of 64-bit
+ * little-endian words), padded with zero bits to a multiple of 8 bytes. Being ordinary field data it
+ * passes through every VTK reader, writer and pipeline.
+ *
+ * Read() checks everything before anyone trusts it: presence, types, sizes, 64-bit overflow, the
+ * length of the stream and that the range is finite. What it accepts can be decoded without reading
+ * out of bounds.
+ *
+ * Source: P. Lindstrom, "Fixed-Rate Compressed Floating-Point Arrays", TVCG 2014; zfp 1.0.1.
+ *
+ * @sa vtkImageZFPCompress vtkImageZFPDecompress vtkZFPReader vtkZFPWriter
+ */
+#ifndef vtkCompressedVolume_h
+#define vtkCompressedVolume_h
+
+#include "vtkObject.h"
+#include "vtkProgIsoFiltersModule.h" // for export macro
+#include "vtkSmartPointer.h"         // for the stream
+
+#include <string> // for the array name and the error message
+
+class vtkDataObject;
+class vtkImageData;
+class vtkUnsignedCharArray;
+
+class VTKPROGISOFILTERS_EXPORT vtkCompressedVolume : public vtkObject
+{
+public:
+  static vtkCompressedVolume* New();
+  vtkTypeMacro(vtkCompressedVolume, vtkObject);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum
+  {
+    FormatVersion = 1,
+    MinimumBlockBits = 9,    ///< sign-less float block: 1 bit "not empty" + 8 bits exponent
+    MaximumBlockBits = 2048, ///< 32 bits per sample
+  };
+
+  enum
+  {
+    PointData = 0,
+    CellData = 1
+  };
+
+  /**
+   * Whether a data object carries a compressed stream in its field data. Cheap; says nothing about
+   * whether the stream is valid (Read() does). Null is allowed.
+   */
+  static bool IsCompressed(vtkDataObject* object);
+
+  /**
+   * Bits per block that zfp uses for a rate in bits per sample (without word alignment):
+   * 64*rate rounded to the nearest integer, at least 9. Returns 0 for a rate that is not in
+   * (0, 32] (or is NaN).
+   */
+  static int BlockBitsForRate(double rate);
+
+  /**
+   * Number of 4x4x4 blocks of a volume, and the bytes of its stream, padding included; -1 when a
+   * dimension is not positive or the result does not fit 63 bits.
+   */
+  static vtkTypeInt64 NumberOfBlocksFor(const int dims[3]);
+  static vtkTypeInt64 StreamBytesFor(const int dims[3], int blockBits);
+
+  /**
+   * Take metadata and stream (by reference) from an image. Returns false, leaving this object empty,
+   * when something is missing, inconsistent with the image, truncated or out of range;
+   * GetErrorMessage() then holds one sentence that names it.
+   */
+  bool Read(vtkImageData* image);
+
+  /**
+   * Store metadata and stream (by reference) in the field data of an image, replacing what is there.
+   * The inverse of Read(); used by what makes streams.
+   */
+  void Write(vtkImageData* image) const;
+
+  /**
+   * Remove the arrays that Write() stores from an image's field data.
+   */
+  static void Remove(vtkImageData* image);
+
+  /**
+   * What the last Read() objected to; empty after a successful one.
+   */
+  std::string GetErrorMessage() const { return this->ErrorMessage; }
+
+  ///@{
+  /**
+   * Bits per 4x4x4 block, 9..2048; and the same in bits per sample.
+   */
+  vtkGetMacro(BlockBits, int);
+  vtkSetMacro(BlockBits, int);
+  double GetRate() const { return this->BlockBits / 64.0; }
+  ///@}
+
+  ///@{
+  /**
+   * Samples per axis: the image's point dimensions, or its cell dimensions for cell data. At least 2.
+   */
+  vtkGetVector3Macro(Dimensions, int);
+  vtkSetVector3Macro(Dimensions, int);
+  ///@}
+
+  ///@{
+  /**
+   * Blocks per axis (partial blocks at the upper borders count) and in total.
+   */
+  void GetBlocks(int blocks[3]) const;
+  vtkIdType GetNumberOfBlocks() const;
+  ///@}
+
+  ///@{
+  /**
+   * Smallest and largest sample of the original array, as float32. Decoded samples may lie a little
+   * outside (lossy compression).
+   */
+  vtkGetVector2Macro(Range, double);
+  vtkSetVector2Macro(Range, double);
+  ///@}
+
+  ///@{
+  /**
+   * VTK type (VTK_SHORT, ...), name and component of the original array.
+   */
+  vtkGetMacro(ScalarType, int);
+  vtkSetMacro(ScalarType, int);
+  std::string GetArrayName() const { return this->ArrayName; }
+  void SetArrayName(const std::string& name);
+  vtkGetMacro(Component, int);
+  vtkSetMacro(Component, int);
+  ///@}
+
+  ///@{
+  /**
+   * PointData (0) or CellData (1): where the samples lie, on the image's points or in the centres of
+   * its cells (half a cell further in index space).
+   */
+  vtkGetMacro(Association, int);
+  vtkSetMacro(Association, int);
+  ///@}
+
+  ///@{
+  /**
+   * The stream; null before a successful Read(). At least StreamBytesFor() bytes.
+   */
+  vtkUnsignedCharArray* GetStream() const;
+  void SetStream(vtkUnsignedCharArray* stream);
+  ///@}
+
+protected:
+  vtkCompressedVolume();
+  ~vtkCompressedVolume() override;
+
+private:
+  vtkCompressedVolume(const vtkCompressedVolume&) = delete;
+  void operator=(const vtkCompressedVolume&) = delete;
+
+  void Clear();
+  std::string Check(vtkImageData* image);
+  std::string ReadNumbers(vtkImageData* image);
+  std::string ReadStreamAndName(vtkImageData* image);
+  std::string CheckGeometry(vtkImageData* image) const;
+
+  int BlockBits = 0;
+  int Dimensions[3] = { 0, 0, 0 };
+  double Range[2] = { 0.0, 0.0 };
+  int ScalarType = 0;
+  std::string ArrayName;
+  int Component = 0;
+  int Association = PointData;
+  vtkSmartPointer<vtkUnsignedCharArray> Stream;
+  std::string ErrorMessage;
+};
+
+#endif

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkImageZFPCompress
+ * @brief   compress one array of an image with fixed-rate ZFP
+ *
+ * Takes one component of a point or cell array of a vtkImageData of any scalar type, as float32, and
+ * produces a compressed volume (see vtkCompressedVolume): a vtkImageData with the same extent,
+ * spacing, origin and direction matrix, no point or cell arrays, the input's field data, and the
+ * compressed stream with its metadata in the field data.
+ *
+ * The array is the one of SetInputArrayToProcess(0, ...), by default the active point scalars, else
+ * the first point array, else the active cell scalars, else the first cell array.
+ *
+ * Blocks are encoded in parallel with OpenMP; the stream is bit-identical to what libzfp's
+ * zfp_compress() writes, whatever the number of threads. Values are converted block by block, so that
+ * no second copy of the volume is made. Progress events are sent between layers of blocks, where an
+ * abort is also noticed (the output then has no stream).
+ *
+ * Errors, each one message and an output without stream: no such array or component; an image with
+ * fewer than 2 samples along an axis; a rate outside (0, 32]; NaN or infinite samples (as float32; the
+ * message counts them).
+ *
+ * The filter asks for the whole extent of its input.
+ *
+ * @sa vtkImageZFPDecompress vtkCompressedVolume vtkZFPWriter
+ */
+#ifndef vtkImageZFPCompress_h
+#define vtkImageZFPCompress_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkProgIsoFiltersModule.h" // for export macro
+
+class vtkDataArray;
+
+class VTKPROGISOFILTERS_EXPORT vtkImageZFPCompress : public vtkImageAlgorithm
+{
+public:
+  static vtkImageZFPCompress* New();
+  vtkTypeMacro(vtkImageZFPCompress, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Rate asked for, in bits per sample, in (0, 32]. Default 8. zfp rounds it to whole bits per block
+   * of 64 samples, at least 9: see GetActualRate().
+   */
+  vtkSetMacro(Rate, double);
+  vtkGetMacro(Rate, double);
+  ///@}
+
+  /**
+   * Rate that zfp uses for GetRate(), in bits per sample: a multiple of 1/64, at least 9/64. 0 when
+   * the rate is out of range.
+   */
+  double GetActualRate() const;
+
+  ///@{
+  /**
+   * Component of the array to compress. Default 0.
+   */
+  vtkSetMacro(Component, int);
+  vtkGetMacro(Component, int);
+  ///@}
+
+  ///@{
+  /**
+   * Threads used to encode; 0, the default, takes all that OpenMP offers (OMP_NUM_THREADS).
+   */
+  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
+  vtkGetMacro(NumberOfThreads, int);
+  ///@}
+
+protected:
+  vtkImageZFPCompress() = default;
+  ~vtkImageZFPCompress() override = default;
+
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector) override;
+  int RequestUpdateExtent(
+    vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector) override;
+  int RequestData(
+    vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector) override;
+
+private:
+  vtkImageZFPCompress(const vtkImageZFPCompress&) = delete;
+  void operator=(const vtkImageZFPCompress&) = delete;
+
+  vtkDataArray* FindArray(vtkInformationVector** inputVector, vtkImageData* input, int& association);
+  bool Compress(vtkImageData* input, vtkDataArray* array, int association, vtkImageData* output);
+
+  double Rate = 8.0;
+  int Component = 0;
+  int NumberOfThreads = 0;
+};
+
+#endif

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkImageZFPDecompress
+ * @brief   decode a compressed volume back to float32 samples
+ *
+ * The inverse of vtkImageZFPCompress: the output is the vtkImageData with the input's geometry and
+ * field data (less the stream and its metadata) and one float32 array with one component, the active
+ * scalars, under the original name and association (point or cell data). Blocks are decoded in
+ * parallel with OpenMP; the values are those of libzfp's zfp_decompress(), bit for bit.
+ *
+ * Errors, one message and an output without array: an input that is not a compressed volume, or whose
+ * metadata or stream is inconsistent (see vtkCompressedVolume::Read).
+ *
+ * @sa vtkImageZFPCompress vtkCompressedVolume vtkZFPReader
+ */
+#ifndef vtkImageZFPDecompress_h
+#define vtkImageZFPDecompress_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkProgIsoFiltersModule.h" // for export macro
+
+class VTKPROGISOFILTERS_EXPORT vtkImageZFPDecompress : public vtkImageAlgorithm
+{
+public:
+  static vtkImageZFPDecompress* New();
+  vtkTypeMacro(vtkImageZFPDecompress, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Threads used to decode; 0, the default, takes all that OpenMP offers (OMP_NUM_THREADS).
+   */
+  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
+  vtkGetMacro(NumberOfThreads, int);
+  ///@}
+
+protected:
+  vtkImageZFPDecompress() = default;
+  ~vtkImageZFPDecompress() override = default;
+
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector) override;
+  int RequestUpdateExtent(
+    vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector) override;
+  int RequestData(
+    vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector) override;
+
+private:
+  vtkImageZFPDecompress(const vtkImageZFPDecompress&) = delete;
+  void operator=(const vtkImageZFPDecompress&) = delete;
+
+  int NumberOfThreads = 0;
+};
+
+#endif
