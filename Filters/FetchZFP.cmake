@@ -58,7 +58,12 @@ endif ()
 find_package(OpenMP REQUIRED COMPONENTS C)
 file(GLOB _sources "${_zfp}/src/*.c")
 add_library(progiso_zfp STATIC ${_sources})
-target_include_directories(progiso_zfp PRIVATE "${_zfp}/src" PUBLIC "$<BUILD_INTERFACE:${_zfp}/include>")
+# this folder last: its zfp/bitstream.inl stands in for the one that the sdist leaves out
+target_include_directories(progiso_zfp
+  PUBLIC "$<BUILD_INTERFACE:${_zfp}/include>"
+  PRIVATE "${_zfp}/src" "${CMAKE_CURRENT_LIST_DIR}")
+# The sdist lacks zfp/bitstream.inl: ours stands in (after zfp's folders: a full source tree uses its own).
+target_include_directories(progiso_zfp PRIVATE "${CMAKE_CURRENT_LIST_DIR}")
 target_link_libraries(progiso_zfp PUBLIC OpenMP::OpenMP_C PRIVATE m)
 target_link_options(progiso_zfp INTERFACE "LINKER:--exclude-libs,ALL")
 set_target_properties(progiso_zfp PROPERTIES
