@@ -1,0 +1,299 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkProgressiveIsosurfaceRepresentation.h"
+
+#include "vtkCellData.h"
+#include "vtkColorTransferFunction.h"
+#include "vtkCompressedVolume.h"
+#include "vtkContourValues.h"
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLODProp3D.h"
+#include "vtkObjectFactory.h"
+#include "vtkPVLODVolume.h"
+#include "vtkPVRenderView.h"
+#include "vtkPVView.h"
+#include "vtkPointData.h"
+#include "vtkPolyDataMapper.h"
+#include "vtkProgressiveIsosurfaceMapper.h"
+#include "vtkProgressiveIsosurfaceStatistics.h"
+#include "vtkVolumeProperty.h"
+
+namespace
+{
+/**
+ * Draws its volume mapper in the opaque pass. ParaView's own class draws it in the volumetric pass, after translucent
+ * geometry, and only when the input has scalars, which a compressed volume has not.
+ */
+class vtkPVOpaqueLODVolume : public vtkPVLODVolume
+{
+public:
+  static vtkPVOpaqueLODVolume* New();
+  vtkTypeMacro(vtkPVOpaqueLODVolume, vtkPVLODVolume);
+
+  int RenderOpaqueGeometry(vtkViewport* viewport) override
+  {
+    if (this->ShowsOutline())
+    {
+      return this->Superclass::RenderOpaqueGeometry(viewport);
+    }
+    const int drawn = this->LODProp->RenderVolumetricGeometry(viewport);
+    this->EstimatedRenderTime = this->LODProp->GetEstimatedRenderTime();
+    return drawn;
+  }
+
+  int RenderVolumetricGeometry(vtkViewport*) override { return 0; }
+
+protected:
+  vtkPVOpaqueLODVolume() = default;
+  ~vtkPVOpaqueLODVolume() override = default;
+
+private:
+  /// True on processes that have no data and show its outline in place of it.
+  bool ShowsOutline() { return this->SelectLOD() != this->HighLODId; }
+
+  vtkPVOpaqueLODVolume(const vtkPVOpaqueLODVolume&) = delete;
+  void operator=(const vtkPVOpaqueLODVolume&) = delete;
+};
+vtkStandardNewMacro(vtkPVOpaqueLODVolume);
+
+constexpr int SPECULATION_ON = 64;
+constexpr int SPECULATION_OFF = 1;
+}
+
+vtkStandardNewMacro(vtkProgressiveIsosurfaceRepresentation);
+
+//------------------------------------------------------------------------------
+vtkProgressiveIsosurfaceRepresentation::vtkProgressiveIsosurfaceRepresentation()
+{
+  this->VolumeMapper = vtkSmartPointer<vtkProgressiveIsosurfaceMapper>::New();
+  this->Actor = vtkSmartPointer<vtkPVOpaqueLODVolume>::New();
+  this->Actor->SetProperty(this->Property);
+  this->Actor->SetLODMapper(this->OutlineMapper);
+  this->Property->ShadeOn();
+  this->SetDiffuseColor(1.0, 1.0, 1.0);
+}
+
+//------------------------------------------------------------------------------
+vtkProgressiveIsosurfaceRepresentation::~vtkProgressiveIsosurfaceRepresentation() = default;
+
+//------------------------------------------------------------------------------
+int vtkProgressiveIsosurfaceRepresentation::ProcessViewRequest(
+  vtkInformationRequestKey* requestType, vtkInformation* inInfo, vtkInformation* outInfo)
+{
+  if (!this->Superclass::ProcessViewRequest(requestType, inInfo, outInfo))
+  {
+    return 0;
+  }
+  if (requestType == vtkPVView::REQUEST_UPDATE())
+  {
+    // The superclass asks for ordered compositing, as translucent volumes need it; opaque surfaces composite by depth.
+    outInfo->Remove(vtkPVRenderView::NEED_ORDERED_COMPOSITING());
+    vtkPVRenderView::SetGeometryBounds(inInfo, this, this->DataBounds, this->Actor->GetMatrix());
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkProgressiveIsosurfaceRepresentation::RequestData(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  this->Cache = nullptr;
+  const int processed = this->Superclass::RequestData(request, inputVector, outputVector);
+  const bool hasInput = inputVector[0]->GetNumberOfInformationObjects() == 1;
+  // A process without input has no data of its own and shows the outline.
+  this->CanDraw = !hasInput || this->FindDrawnArray();
+  return processed;
+}
+
+//------------------------------------------------------------------------------
+bool vtkProgressiveIsosurfaceRepresentation::FindDrawnArray()
+{
+  this->DrawnArray = ArraySelection();
+  vtkImageData* image = vtkImageData::SafeDownCast(this->Cache);
+  if (!image)
+  {
+    vtkErrorMacro("Progressive Isosurface shows image data only; use the filter Resample To Image, or Extract "
+                  "Block for one image of a composite data set.");
+    return false;
+  }
+  return vtkCompressedVolume::IsCompressed(image) ? this->FindCompressedArray(image)
+                                                  : this->FindPlainArray(image);
+}
+
+//------------------------------------------------------------------------------
+bool vtkProgressiveIsosurfaceRepresentation::FindCompressedArray(vtkImageData* image)
+{
+  vtkNew<vtkCompressedVolume> volume;
+  if (!volume->Read(image))
+  {
+    vtkErrorMacro("Progressive Isosurface: " << volume->GetErrorMessage());
+    return false;
+  }
+  this->DrawnArray = { volume->GetAssociation(), volume->GetArrayName() };
+  return true;
+}
+
+//------------------------------------------------------------------------------
+bool vtkProgressiveIsosurfaceRepresentation::FindPlainArray(vtkImageData* image)
+{
+  this->DrawnArray = this->IsosurfaceArray;
+  if (this->DrawnArray.Name.empty())
+  {
+    vtkDataArray* scalars = image->GetPointData()->GetScalars();
+    this->DrawnArray.Association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+    if (!scalars)
+    {
+      scalars = image->GetCellData()->GetScalars();
+      this->DrawnArray.Association = vtkDataObject::FIELD_ASSOCIATION_CELLS;
+    }
+    this->DrawnArray.Name = scalars && scalars->GetName() ? scalars->GetName() : "";
+  }
+  vtkDataSetAttributes* arrays = image->GetAttributes(this->DrawnArray.Association);
+  if (arrays && arrays->GetArray(this->DrawnArray.Name.c_str()))
+  {
+    return true;
+  }
+  // A process may hold an empty piece of a distributed image, which has no arrays at all.
+  if (image->GetNumberOfPoints() > 0)
+  {
+    vtkErrorMacro("Progressive Isosurface: the image has no array \""
+      << this->DrawnArray.Name << "\" and is no compressed volume; choose an Isosurface Array.");
+  }
+  return false;
+}
+
+//------------------------------------------------------------------------------
+bool vtkProgressiveIsosurfaceRepresentation::IsColoredByDrawnArray()
+{
+  vtkInformation* color = this->GetInputArrayInformation(0);
+  return color && color->Has(vtkDataObject::FIELD_ASSOCIATION()) &&
+    color->Has(vtkDataObject::FIELD_NAME()) && color->Get(vtkDataObject::FIELD_NAME()) &&
+    color->Get(vtkDataObject::FIELD_ASSOCIATION()) == this->DrawnArray.Association &&
+    color->Get(vtkDataObject::FIELD_NAME()) == this->DrawnArray.Name;
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::UpdateMapperParameters()
+{
+  // Nothing here may touch a modified time without need: ParaView calls this before every image, and a mapper that
+  // believes its scene changed starts its refinement anew.
+  this->VolumeMapper->SelectScalarArray(this->DrawnArray.Name.c_str());
+  this->VolumeMapper->SetScalarMode(
+    this->DrawnArray.Association == vtkDataObject::FIELD_ASSOCIATION_CELLS
+      ? VTK_SCALAR_MODE_USE_CELL_FIELD_DATA
+      : VTK_SCALAR_MODE_USE_POINT_FIELD_DATA);
+  const bool mapped = this->ColorMap && this->IsColoredByDrawnArray();
+  this->Property->SetColor(mapped ? this->ColorMap.Get() : this->SolidColor.Get());
+  this->Actor->SetMapper(this->VolumeMapper);
+  this->Actor->SetVisibility(this->CanDraw);
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetIsosurfaceArray(
+  int, int, int, int association, const char* name)
+{
+  const std::string newName = name ? name : "";
+  if (association == this->IsosurfaceArray.Association && newName == this->IsosurfaceArray.Name)
+  {
+    return;
+  }
+  this->IsosurfaceArray = { association, newName };
+  this->MarkModified();
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetIsovalue(double value)
+{
+  vtkContourValues* values = this->Property->GetIsoSurfaceValues();
+  if (values->GetNumberOfContours() != 1 || values->GetValue(0) != value)
+  {
+    values->SetNumberOfContours(1);
+    values->SetValue(0, value);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetDiffuseColor(double red, double green, double blue)
+{
+  // One node: the same colour at every isovalue.
+  this->SolidColor->RemoveAllPoints();
+  this->SolidColor->AddRGBPoint(0.0, red, green, blue);
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetColor(vtkColorTransferFunction* colorMap)
+{
+  this->ColorMap = colorMap;
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetRate(double bitsPerVoxel)
+{
+  this->GetIsosurfaceMapper()->SetRate(bitsPerVoxel);
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetSpeculation(bool on)
+{
+  this->GetIsosurfaceMapper()->SetSpeculationLimit(on ? SPECULATION_ON : SPECULATION_OFF);
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetCacheLimit(int mebibytes)
+{
+  this->GetIsosurfaceMapper()->SetCacheLimit(static_cast<vtkTypeInt64>(mebibytes) << 20);
+}
+
+//------------------------------------------------------------------------------
+int vtkProgressiveIsosurfaceRepresentation::GetNumberOfPasses()
+{
+  return this->GetStatistics()->GetNumberOfPasses();
+}
+
+//------------------------------------------------------------------------------
+double vtkProgressiveIsosurfaceRepresentation::GetCompletedFraction()
+{
+  return this->GetIsosurfaceMapper()->GetCompletedFraction();
+}
+
+//------------------------------------------------------------------------------
+double vtkProgressiveIsosurfaceRepresentation::GetTotalMilliseconds()
+{
+  return this->GetStatistics()->GetTotalMilliseconds();
+}
+
+//------------------------------------------------------------------------------
+vtkIdType vtkProgressiveIsosurfaceRepresentation::GetGPUBytes()
+{
+  return this->GetStatistics()->GetTotalBytes();
+}
+
+//------------------------------------------------------------------------------
+vtkIdType vtkProgressiveIsosurfaceRepresentation::GetCompressedBytes()
+{
+  return this->GetStatistics()->GetCompressedBytes();
+}
+
+//------------------------------------------------------------------------------
+vtkProgressiveIsosurfaceMapper* vtkProgressiveIsosurfaceRepresentation::GetIsosurfaceMapper()
+{
+  return vtkProgressiveIsosurfaceMapper::SafeDownCast(this->VolumeMapper);
+}
+
+//------------------------------------------------------------------------------
+vtkProgressiveIsosurfaceStatistics* vtkProgressiveIsosurfaceRepresentation::GetStatistics()
+{
+  return this->GetIsosurfaceMapper()->GetStatistics();
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "IsosurfaceArray: " << this->IsosurfaceArray.Name << "\n";
+  os << indent << "DrawnArray: " << this->DrawnArray.Name << "\n";
+  os << indent << "CanDraw: " << this->CanDraw << "\n";
+}

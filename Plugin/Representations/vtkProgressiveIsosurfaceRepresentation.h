@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkProgressiveIsosurfaceRepresentation
+ * @brief   ParaView representation of image data as a progressive isosurface
+ *
+ * Shows plain image data and compressed volumes (see vtkCompressedVolume) through vtkProgressiveIsosurfaceMapper. The surface is
+ * opaque, so it is drawn in the opaque pass, where translucent geometry blends over it, and it asks for no ordered
+ * compositing. Colour: the colour map at the isovalue when the representation is coloured by the array that is drawn,
+ * the solid colour otherwise.
+ *
+ * Image data only: rectilinear grids and composite data are refused with an error.
+ */
+
+#ifndef vtkProgressiveIsosurfaceRepresentation_h
+#define vtkProgressiveIsosurfaceRepresentation_h
+
+#include "vtkImageVolumeRepresentation.h"
+#include "vtkProgIsoRepresentationsModule.h" // for export macro
+
+#include <string> // for ivar
+
+class vtkImageData;
+class vtkProgressiveIsosurfaceMapper;
+class vtkProgressiveIsosurfaceStatistics;
+
+class VTKPROGISOREPRESENTATIONS_EXPORT vtkProgressiveIsosurfaceRepresentation
+  : public vtkImageVolumeRepresentation
+{
+public:
+  static vtkProgressiveIsosurfaceRepresentation* New();
+  vtkTypeMacro(vtkProgressiveIsosurfaceRepresentation, vtkImageVolumeRepresentation);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  int ProcessViewRequest(vtkInformationRequestKey* requestType, vtkInformation* inInfo,
+    vtkInformation* outInfo) override;
+
+  /**
+   * The array to draw an isosurface of, in plain image data; empty: the active scalars. A compressed volume holds
+   * one array and ignores this. The signature is that of ParaView's array selection properties.
+   */
+  void SetIsosurfaceArray(int index, int port, int connection, int association, const char* name);
+
+  /// The isovalue, in the units of the array.
+  void SetIsovalue(double value);
+
+  /// Colour of the surface where no colour map applies.
+  void SetDiffuseColor(double red, double green, double blue);
+
+  /// Colour map, used when the representation is coloured by the isosurface array.
+  void SetColor(vtkColorTransferFunction* colorMap);
+
+  ///@{
+  /**
+   * Forwarded to the mapper: bits per voxel for plain data, speculation on or off, and the block cache's limit in
+   * mebibytes (0: automatic).
+   */
+  void SetRate(double bitsPerVoxel);
+  void SetSpeculation(bool on);
+  void SetCacheLimit(int mebibytes);
+  ///@}
+
+  ///@{
+  /// Statistics of the last image, for the information properties.
+  int GetNumberOfPasses();
+  double GetCompletedFraction();
+  double GetTotalMilliseconds();
+  vtkIdType GetGPUBytes();
+  vtkIdType GetCompressedBytes();
+  ///@}
+
+protected:
+  vtkProgressiveIsosurfaceRepresentation();
+  ~vtkProgressiveIsosurfaceRepresentation() override;
+
+  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+
+  void UpdateMapperParameters() override;
+
+private:
+  /// An array of the input by association and name.
+  struct ArraySelection
+  {
+    int Association = 0; // vtkDataObject::FIELD_ASSOCIATION_POINTS
+    std::string Name;
+  };
+
+  vtkProgressiveIsosurfaceMapper* GetIsosurfaceMapper();
+  vtkProgressiveIsosurfaceStatistics* GetStatistics();
+
+  ///@{
+  /// Sets DrawnArray from the input; false after an error that says why nothing can be drawn.
+  bool FindDrawnArray();
+  bool FindCompressedArray(vtkImageData* image);
+  bool FindPlainArray(vtkImageData* image);
+  ///@}
+
+  /// True when the representation is coloured by the array that is drawn.
+  bool IsColoredByDrawnArray();
+
+  ArraySelection IsosurfaceArray; ///< as chosen by the user, its name empty for the active scalars
+  ArraySelection DrawnArray;      ///< the array of the present input
+  vtkSmartPointer<vtkColorTransferFunction> ColorMap;
+  vtkNew<vtkColorTransferFunction> SolidColor;
+  bool CanDraw = false;
+
+  vtkProgressiveIsosurfaceRepresentation(const vtkProgressiveIsosurfaceRepresentation&) = delete;
+  void operator=(const vtkProgressiveIsosurfaceRepresentation&) = delete;
+};
+
+#endif
