@@ -1,0 +1,377 @@
+"""Double-precision CPU ray caster of the exact trilinear isosurface.
+
+Every ray visits each cell that it crosses, found by an exact grid walk. Inside a cell the trilinear interpolant along a
+ray is a cubic; its extrema split the ray's way through the cell into monotone pieces, so that no root can be missed, double
+ones included. The surface lies where ``f >= isovalue`` changes along the ray within the volume; the volume's border
+has no caps.
+
+Rounding decides what a ray sees where its profile grazes the isovalue, and no caster in single precision can be asked to
+decide such a ray as this one does. So every ray is cast three times in one walk: for the isovalue itself (`Cast.depth`), and for
+the first place where the other side is *possible* (`Cast.early`) and where it is *certain* (`Cast.late`) if every value may be off
+by the `Slack` given. A correct depth lies between the two, and may be a miss only if no crossing is certain.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+FLOAT32_ULP = 2.0**-24
+CHUNK = 1 << 16
+
+
+@dataclass(frozen=True)
+class Slack:
+    """What rounding may do to a caster in single precision.
+
+    Attributes
+    ----------
+    value
+        error of an interpolated value, in units in the last place (float32) of the cell's largest value.
+    position
+        error of a sample's position, in voxels.
+    """
+
+    value: float = 0.0
+    position: float = 0.0
+
+
+@dataclass(frozen=True)
+class Volume:
+    """Samples and where they are.
+
+    Attributes
+    ----------
+    values
+        array [z, y, x] of the samples.
+    index_to_world
+        4x4 matrix that takes an array index (x, y, z) to world coordinates.
+    """
+
+    values: np.ndarray
+    index_to_world: np.ndarray
+
+    @classmethod
+    def from_geometry(
+        cls, values, origin=(0, 0, 0), spacing=(1, 1, 1), direction=np.eye(3), extent_start=(0, 0, 0), user=np.eye(4), shift=0.0
+    ):
+        """Place `values` as ``vtkImageData`` does; `shift` is 0.5 where they belong to cells."""
+        matrix = np.eye(4)
+        matrix[:3, :3] = np.asarray(direction, float).reshape(3, 3) * np.asarray(spacing, float)
+        matrix[:3, 3] = np.asarray(origin, float) + matrix[:3, :3] @ (np.asarray(extent_start, float) + shift)
+        return cls(np.asarray(values), np.asarray(user, float) @ matrix)
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A VTK camera: pixel centres are sampled, row 0 is at the top of the image."""
+
+    position: tuple
+    focal_point: tuple
+    view_up: tuple = (0.0, 1.0, 0.0)
+    view_angle: float = 30.0
+    parallel_scale: float = None
+
+    @classmethod
+    def from_vtk(cls, camera):
+        """Copy a ``vtkCamera``."""
+        return cls(
+            camera.GetPosition(),
+            camera.GetFocalPoint(),
+            camera.GetViewUp(),
+            camera.GetViewAngle(),
+            camera.GetParallelScale() if camera.GetParallelProjection() else None,
+        )
+
+    def rays(self, size):
+        """Return origins and unit directions, each [height * width, 3], for an image of `size` (width, height)."""
+        width, height = size
+        position = np.asarray(self.position, float)
+        forward = _unit(np.asarray(self.focal_point, float) - position)
+        right = _unit(np.cross(forward, np.asarray(self.view_up, float)))
+        up = np.cross(right, forward)
+        x, y = np.meshgrid((np.arange(width) + 0.5) / width * 2 - 1, 1 - (np.arange(height) + 0.5) / height * 2)
+        offset = x.reshape(-1, 1) * (width / height) * right + y.reshape(-1, 1) * up
+        if self.parallel_scale is not None:
+            return position + self.parallel_scale * offset, np.broadcast_to(forward, offset.shape)
+        directions = forward + np.tan(np.radians(self.view_angle) / 2) * offset
+        return np.broadcast_to(position, offset.shape), directions / np.linalg.norm(directions, axis=1, keepdims=True)
+
+
+@dataclass(frozen=True)
+class Cast:
+    """What the rays see; every array has the shape of the image, distances are in world units and `inf` is a miss.
+
+    Attributes
+    ----------
+    depth
+        distance along the ray to the surface.
+    early, late
+        first distance at which the surface is possible and certain, given the slack.
+    voxels
+        voxels (length in index space) that a ray goes in one world unit.
+    """
+
+    depth: np.ndarray
+    early: np.ndarray
+    late: np.ndarray
+    voxels: np.ndarray
+
+
+def cast(volume, isovalue, camera, size, slack=Slack()):
+    """Cast one ray through the centre of each of the image's pixels.
+
+    Parameters
+    ----------
+    volume : Volume
+    isovalue : float
+    camera : Camera
+    size : (int, int)
+        width and height of the image.
+    slack : Slack
+
+    Returns
+    -------
+    Cast
+    """
+    origins, directions = camera.rays(size)
+    result = cast_rays(volume, isovalue, origins, directions, slack)
+    shape = (size[1], size[0])
+    return Cast(*(getattr(result, name).reshape(shape) for name in ("depth", "early", "late", "voxels")))
+
+
+def cast_rays(volume, isovalue, origins, directions, slack=Slack()):
+    """Cast the rays ``origins + t * directions``, t >= 0, with unit directions; see `cast`."""
+    grid = _Grid(volume.values, float(isovalue), slack)
+    to_index = np.linalg.inv(volume.index_to_world[:3, :3])
+    starts = (np.asarray(origins, float) - volume.index_to_world[:3, 3]) @ to_index.T
+    steps = np.asarray(directions, float) @ to_index.T
+    hits = np.full((3, len(starts)), np.inf)
+    for first in range(0, len(starts), CHUNK):
+        part = slice(first, first + CHUNK)
+        hits[:, part] = _cast_chunk(grid, starts[part].T, steps[part].T, slack)
+    return Cast(hits[1], hits[0], hits[2], np.linalg.norm(steps, axis=1))
+
+
+def _unit(vector):
+    return vector / np.linalg.norm(vector)
+
+
+# --- the grid ------------------------------------------------------------------------------------------------------------
+
+
+class _Grid:
+    """The samples less the isovalue, flat, and which cells can matter to a ray that started inside or outside."""
+
+    def __init__(self, values, isovalue, slack):
+        if values.ndim != 3 or min(values.shape) < 2:
+            raise ValueError(f"at least two samples are needed along each axis, got shape {values.shape}")
+        if not np.isfinite(values).all():
+            raise ValueError("the volume holds values that are not finite")
+        self.size = np.array(values.shape[::-1])
+        self.strides = np.array([1, self.size[0], self.size[0] * self.size[1]])
+        excess = values.astype(float) - isovalue
+        low, high = _cell_extremes(excess, np.minimum), _cell_extremes(excess, np.maximum)
+        largest = np.maximum(_cell_extremes(np.abs(values.astype(float)), np.maximum), abs(isovalue))
+        error = slack.value * FLOAT32_ULP * largest + slack.position * (high - low)
+        # Bit 0: a ray that started inside can get out here. Bit 1: one that started outside can get in.
+        matters = (low <= error).astype(np.uint8) | ((high >= -error).astype(np.uint8) << 1)
+        self.excess = excess.ravel()
+        self.error = self._pad(error)
+        self.matters = self._pad(matters)
+
+    def _pad(self, cells):
+        """Store cells like samples, so that one index finds both."""
+        padded = np.zeros(tuple(self.size[::-1]), cells.dtype)
+        padded[:-1, :-1, :-1] = cells
+        return padded.ravel()
+
+    def coefficients(self, index):
+        """Return the trilinear polynomials of cells, keyed by their variables."""
+        dx, dy, dz = self.strides
+        c = {name: self.excess[index + sum(d for d, bit in zip((dx, dy, dz), name) if bit == "1")] for name in _CORNERS}
+        return {
+            "": c["000"],
+            "x": c["100"] - c["000"],
+            "y": c["010"] - c["000"],
+            "z": c["001"] - c["000"],
+            "xy": c["110"] - c["100"] - c["010"] + c["000"],
+            "xz": c["101"] - c["100"] - c["001"] + c["000"],
+            "yz": c["011"] - c["010"] - c["001"] + c["000"],
+            "xyz": (c["111"] - c["110"] - c["101"] + c["100"]) - (c["011"] - c["010"] - c["001"] + c["000"]),
+        }
+
+
+_CORNERS = [f"{i:03b}" for i in range(8)]
+
+
+def _cell_extremes(samples, pick):
+    for axis in range(3):
+        head = [slice(None)] * 3
+        tail = [slice(None)] * 3
+        head[axis], tail[axis] = slice(None, -1), slice(1, None)
+        samples = pick(samples[tuple(head)], samples[tuple(tail)])
+    return samples
+
+
+# --- a ray's way through the grid -----------------------------------------------------------------------------------------
+
+
+def _clip(start, step, low, high):
+    """Return where rays enter and leave a box; they miss it where ``enter > leave``."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        a, b = (low[:, None] - start) / step, (high[:, None] - start) / step
+    parallel = step == 0
+    between = (start >= low[:, None]) & (start <= high[:, None])
+    near = np.where(parallel, np.where(between, -np.inf, np.inf), np.minimum(a, b)).max(axis=0)
+    far = np.where(parallel, np.where(between, np.inf, -np.inf), np.maximum(a, b)).min(axis=0)
+    return np.maximum(near, 0.0), far
+
+
+def _cast_chunk(grid, start, step, slack):
+    """Return `early`, `depth` and `late` of rays given in index space."""
+    last = (grid.size - 1).astype(float)
+    hits = np.full((3, start.shape[1]), np.inf)
+    enter, leave = _clip(start, step, np.zeros(3), last)
+    if slack.position:
+        # Rays that just touch the box, or just miss it, may be seen by another caster as it likes.
+        touch, off = _clip(start, step, np.full(3, -slack.position), last + slack.position)
+        core, out = _clip(start, step, np.full(3, slack.position), last - slack.position)
+        edge = (touch <= off) & (core > out)
+        hits[0, edge] = touch[edge]
+    rays = np.flatnonzero(enter <= leave)
+    if len(rays):
+        found = _Walk(grid, start[:, rays], step[:, rays], enter[rays], leave[rays]).run()
+        hits[:, rays] = np.stack([np.minimum(hits[0, rays], found[0]), found[1], found[2]])
+    if slack.position:
+        hits[2, edge] = np.inf
+    return hits
+
+
+class _Walk:
+    """All rays of a chunk, step by step from cell to cell, until their last crossing is found or they leave."""
+
+    def __init__(self, grid, start, step, enter, leave):
+        self.grid = grid
+        self.enter = enter
+        # Distances are kept from the entry on, so that a far camera costs no digits.
+        self.start = start + enter * step
+        self.step = step
+        self.leave = leave - enter
+        self.hits = np.full((3, len(enter)), np.inf)
+        cells = np.clip(np.floor(self.start), 0, (grid.size - 2)[:, None]).astype(np.int64)
+        self.index = grid.strides @ cells
+        self.near = np.zeros(len(enter))
+        forward = step > 0
+        self.plane = (cells + forward).astype(float)
+        self.left = np.where(forward, (grid.size - 2)[:, None] - cells, cells)
+        self.sign = np.where(forward, 1, -1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            self.inverse = 1.0 / step
+            self.far = np.where(step == 0, np.inf, (self.plane - self.start) / step)
+        self.side = self._first_side()
+
+    def _first_side(self):
+        """Return +1 for rays that start inside and -1 outside; where rounding decides, any outcome is possible."""
+        polynomial = _along(self.grid, self.index, self.start - self._corner(), np.zeros_like(self.start))
+        excess, error = polynomial[0], self.grid.error[self.index]
+        self.unsure = (np.abs(excess) <= error) & (error > 0)
+        self.hits[0, self.unsure] = self.enter[self.unsure]
+        return np.where(excess >= 0, 1.0, -1.0)
+
+    def _corner(self, rays=slice(None)):
+        index, (_, sy, sz) = self.index[rays], self.grid.strides
+        return np.stack([index % sy, index % sz // sy, index // sz])
+
+    def run(self):
+        rays = np.arange(len(self.enter))
+        while len(rays):
+            axis = np.argmin(self.far[:, rays], axis=0)
+            far = np.maximum(np.minimum(self.far[axis, rays], self.leave[rays]), self.near[rays])
+            bit = np.where(self.side[rays] > 0, 1, 2)
+            at = np.flatnonzero(self.grid.matters[self.index[rays]] & bit)
+            if len(at):
+                self._intersect(rays[at], far[at])
+            self.near[rays] = far
+            rays = self._advance(rays, axis)
+        # A ray whose side at its entry is a matter of rounding may cross anywhere or nowhere.
+        self.hits[2, self.unsure] = np.inf
+        return self.hits
+
+    def _advance(self, rays, axis):
+        """Step to the next cells; return the rays that have one and still look for a crossing."""
+        go = (self.left[axis, rays] > 0) & (self.hits[2, rays] == np.inf) & (self.far[axis, rays] < self.leave[rays])
+        rays, axis = rays[go], axis[go]
+        sign = self.sign[axis, rays]
+        self.index[rays] += sign * self.grid.strides[axis]
+        self.left[axis, rays] -= 1
+        self.plane[axis, rays] += sign
+        self.far[axis, rays] = (self.plane[axis, rays] - self.start[axis, rays]) * self.inverse[axis, rays]
+        return rays
+
+    def _intersect(self, rays, far):
+        """Look for the crossings of rays in their cells, between the distances `near` and `far`."""
+        near, corner = self.near[rays], self._corner(rays)
+        a = np.clip(self.start[:, rays] + near * self.step[:, rays] - corner, 0, 1)
+        b = np.clip(self.start[:, rays] + far * self.step[:, rays] - corner, 0, 1)
+        side = self.side[rays]
+        cubic = _along(self.grid, self.index[rays], a, b - a) * side
+        knots = _monotone_knots(cubic)
+        values = _evaluate(cubic[:, None, :], knots)
+        error = self.grid.error[self.index[rays]]
+        for row, threshold in enumerate((error, np.zeros_like(error), -error)):
+            # Equal to the isovalue is inside: reached from outside, not left from inside.
+            crossed = np.where((side > 0) & (threshold == 0), values < threshold, values <= threshold)
+            new = np.flatnonzero(crossed.any(axis=0) & (self.hits[row, rays] == np.inf))
+            if len(new):
+                s = _first_root(cubic[:, new], knots[:, new], crossed[:, new], threshold[new])
+                self.hits[row, rays[new]] = self.enter[rays[new]] + near[new] + s * (far[new] - near[new])
+
+
+# --- the cubic along a ray --------------------------------------------------------------------------------------------------
+
+
+def _along(grid, index, a, b):
+    """Return coefficients [4, n] of the interpolant at ``a + s * b`` (in the cell, 0 to 1), from the constant up."""
+    (ax, ay, az), (bx, by, bz) = a, b
+    c = grid.coefficients(index)
+    constant = (
+        c[""] + c["x"] * ax + c["y"] * ay + c["z"] * az
+        + c["xy"] * ax * ay + c["xz"] * ax * az + c["yz"] * ay * az + c["xyz"] * ax * ay * az
+    )  # fmt: skip
+    linear = (
+        c["x"] * bx + c["y"] * by + c["z"] * bz
+        + c["xy"] * (ax * by + ay * bx) + c["xz"] * (ax * bz + az * bx) + c["yz"] * (ay * bz + az * by)
+        + c["xyz"] * (ax * ay * bz + ax * az * by + ay * az * bx)
+    )  # fmt: skip
+    square = (
+        c["xy"] * bx * by + c["xz"] * bx * bz + c["yz"] * by * bz
+        + c["xyz"] * (ax * by * bz + ay * bx * bz + az * bx * by)
+    )  # fmt: skip
+    return np.stack([constant, linear, square, c["xyz"] * bx * by * bz])
+
+
+def _evaluate(cubic, s):
+    return ((cubic[3] * s + cubic[2]) * s + cubic[1]) * s + cubic[0]
+
+
+def _monotone_knots(cubic):
+    """Return [4, n] ascending: 0, the cubic's extrema (clipped to 0 to 1), 1."""
+    c, b, a = cubic[1], 2 * cubic[2], 3 * cubic[3]
+    root = np.sqrt(np.maximum(b * b - 4 * a * c, 0))
+    q = -0.5 * (b + np.where(b < 0, -root, root))
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        extrema = np.stack([q / a, c / q])
+    extrema = np.sort(np.clip(np.nan_to_num(extrema, nan=0.0, posinf=1.0, neginf=0.0), 0, 1), axis=0)
+    return np.concatenate([np.zeros((1, len(c))), extrema, np.ones((1, len(c)))])
+
+
+def _first_root(cubic, knots, crossed, threshold):
+    """Return where the cubic first falls to the threshold; `crossed` tells at which knots it has."""
+    first = np.argmax(crossed, axis=0)
+    column = np.arange(len(first))
+    low, high = knots[np.maximum(first - 1, 0), column], knots[first, column]
+    for _ in range(54):
+        middle = 0.5 * (low + high)
+        above = _evaluate(cubic, middle) > threshold
+        low, high = np.where(above, middle, low), np.where(above, high, middle)
+    return high

@@ -1,0 +1,55 @@
+"""Every tolerance that a test uses, and why it is what it is. Nothing else in Testing/ names one."""
+
+from oracle.caster import Slack
+
+# --- depth against the double-precision caster ----------------------------------------------------------------------------
+
+#: |dt| that the issue grants where a ray's profile clears the isovalue, in voxels along the ray.
+DEPTH_VOXELS = 1e-4
+
+#: The depth image is float32: half a unit in its last place, relative to the depth itself, comes on top of `DEPTH_VOXELS`.
+DEPTH_RELATIVE = 2.0**-24
+
+#: What single precision may do to a sample: its value by this many units in the last place of the largest value at hand
+#: (the interpolant is a sum of eight products), its place by this many voxels (the last place of an index near 256 is 3e-5 voxels,
+#: and the ray's direction adds as much at the volume's far end). `Cast.early` and `Cast.late` follow from it.
+SLACK = Slack(value=8.0, position=3e-5)
+
+#: A ray is clear, and held to `DEPTH_VOXELS`, where the slack moves its hit by at most this many voxels between early and late. Any other
+#: ray grazes: its depth must lie between early and late, give or take `DEPTH_VOXELS`.
+CLEAR_VOXELS = 1e-3
+
+#: So that the exemption cannot swallow a defect: at most this part of the rays that can hit may graze, on scans and smooth fields ...
+GRAZING_FRACTION = 0.02
+
+#: ... and on white noise, where every other cell holds a tangent.
+GRAZING_FRACTION_NOISE = 0.10
+
+# --- the caster itself -------------------------------------------------------------------------------------------------------
+
+#: Double precision against a closed form, in world units of a volume some ten units wide.
+ORACLE_EXACT = 1e-10
+
+#: A sphere of radius 20 voxels sampled as a distance: the trilinear surface lies within h^2 / (8 r) * 3 of it.
+ORACLE_SPHERE_VOXELS = 3 / (8 * 20.0)
+
+# --- camera and geometry ------------------------------------------------------------------------------------------------------
+
+#: Camera rays against VTK's own matrices, which are inverted on the way.
+CAMERA_RELATIVE = 1e-9
+
+# --- images ---------------------------------------------------------------------------------------------------------------------
+
+#: Against a baseline: part of the pixels that may differ by more than `IMAGE_LEVELS` grey levels in some channel. Silhouettes move by a
+#: pixel between drivers; a missing block or a wrong normal changes far more.
+IMAGE_PIXELS = 0.005
+IMAGE_LEVELS = 12
+
+#: Mean difference over the whole image, in grey levels.
+IMAGE_MEAN = 0.5
+
+# --- memory ----------------------------------------------------------------------------------------------------------------------
+
+#: GPU memory beside the compressed payload and the cache, as the issue bounds it.
+BYTES_PER_BLOCK = 3
+BYTES_PER_PIXEL = 40
