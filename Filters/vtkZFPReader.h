@@ -26,6 +26,8 @@
 
 #include <string> // for error messages
 
+class vtkImageData;
+
 class VTKPROGISOFILTERS_EXPORT vtkZFPReader : public vtkImageAlgorithm
 {
 public:
@@ -86,7 +88,6 @@ protected:
   vtkZFPReader();
   ~vtkZFPReader() override;
 
-  int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(
     vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector) override;
   int RequestData(
@@ -97,8 +98,12 @@ private:
   void operator=(const vtkZFPReader&) = delete;
 
   struct Layout;
-  std::string FindLayout(const char* fileName, Layout& layout) const;
+  static std::string FindLayout(
+    const char* fileName, const int dims[3], double rate, Layout& layout);
+  static std::string CheckLayout(const Layout& layout);
   std::string Load(const Layout& layout, vtkImageData* output);
+  bool FindRange(const Layout& layout, void* words, double range[2], std::string& error);
+  void Report(const std::string& error);
 
   char* FileName = nullptr;
   char* ArrayName = nullptr;
@@ -106,6 +111,7 @@ private:
   double Rate = 8.0;
   double DataSpacing[3] = { 1.0, 1.0, 1.0 };
   double DataOrigin[3] = { 0.0, 0.0, 0.0 };
+  std::string ReportedError;
 };
 
 #endif

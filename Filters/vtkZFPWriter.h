@@ -21,7 +21,6 @@
 #include "vtkWriter.h"
 
 class vtkCompressedVolume;
-class vtkImageData;
 
 class VTKPROGISOFILTERS_EXPORT vtkZFPWriter : public vtkWriter
 {
@@ -59,7 +58,7 @@ private:
   vtkZFPWriter(const vtkZFPWriter&) = delete;
   void operator=(const vtkZFPWriter&) = delete;
 
-  bool WriteFile(vtkCompressedVolume* volume);
+  void WriteFile(vtkCompressedVolume* volume);
 
   char* FileName = nullptr;
   bool WriteHeader = true;

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkImageZFPDecompress.h"
+
+#include "vtkCellData.h"
+#include "vtkCompressedVolume.h"
+#include "vtkErrorCode.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkZFPBlocks.h"
+
+#include <algorithm>
+#include <cstdint>
+
+vtkStandardNewMacro(vtkImageZFPDecompress);
+
+namespace
+{
+//------------------------------------------------------------------------------
+// The stream, or a copy where its memory (someone's NumPy array) is not aligned to 64-bit words.
+vtkSmartPointer<vtkUnsignedCharArray> AlignedStream(vtkUnsignedCharArray* stream)
+{
+  if (reinterpret_cast<std::uintptr_t>(stream->GetPointer(0)) % sizeof(vtkTypeUInt64) == 0)
+  {
+    return stream;
+  }
+  auto copy = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  copy->DeepCopy(stream);
+  return copy;
+}
+}
+
+//------------------------------------------------------------------------------
+int vtkImageZFPDecompress::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkInformation* in = inputVector[0]->GetInformationObject(0);
+  vtkInformation* out = outputVector->GetInformationObject(0);
+  out->CopyEntry(in, vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
+  out->CopyEntry(in, vtkDataObject::SPACING());
+  out->CopyEntry(in, vtkDataObject::ORIGIN());
+  out->CopyEntry(in, vtkDataObject::DIRECTION());
+  vtkDataObject::SetPointDataActiveScalarInfo(out, VTK_FLOAT, 1);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+// Blocks lie across any cut through the image: the whole is taken and made.
+int vtkImageZFPDecompress::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+{
+  vtkInformation* in = inputVector[0]->GetInformationObject(0);
+  in->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(),
+    in->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()), 6);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkImageZFPDecompress::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkImageData* input = vtkImageData::GetData(inputVector[0]);
+  vtkImageData* output = vtkImageData::GetData(outputVector);
+  this->SetErrorCode(vtkErrorCode::NoError);
+  output->Initialize();
+  output->CopyStructure(input);
+  output->GetFieldData()->PassData(input->GetFieldData());
+  vtkCompressedVolume::Remove(output);
+
+  vtkNew<vtkCompressedVolume> volume;
+  if (!volume->Read(input))
+  {
+    vtkErrorMacro("The input is " << volume->GetErrorMessage() << ".");
+    this->SetErrorCode(vtkErrorCode::UserError);
+    return 1; // the message is out already: the executive need not add its own
+  }
+
+  int dims[3];
+  volume->GetDimensions(dims);
+  vtkNew<vtkFloatArray> samples;
+  samples->SetName(volume->GetArrayName().c_str());
+  samples->SetNumberOfValues(static_cast<vtkIdType>(dims[0]) * dims[1] * dims[2]);
+
+  const auto stream = AlignedStream(volume->GetStream());
+  vtkZFPBlocks blocks(dims, volume->GetBlockBits(), stream->GetPointer(0), this->NumberOfThreads);
+  const vtkTypeInt64 layers = blocks.GetNumberOfLayers();
+  const vtkTypeInt64 step = blocks.GetLayersPerStep();
+  for (vtkTypeInt64 layer = 0; layer < layers; layer += step)
+  {
+    const vtkTypeInt64 end = std::min(layer + step, layers);
+    blocks.Decode(samples->GetPointer(0), layer, end);
+    this->UpdateProgress(static_cast<double>(end) / layers);
+    if (this->GetAbortExecute())
+    {
+      return 1;
+    }
+  }
+
+  vtkDataSetAttributes* attributes = output->GetPointData();
+  if (volume->GetAssociation() == vtkCompressedVolume::CellData)
+  {
+    attributes = output->GetCellData();
+  }
+  attributes->SetScalars(samples);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkImageZFPDecompress::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
+}

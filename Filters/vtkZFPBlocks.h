@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkZFPBlocks
+ * @brief   encode and decode runs of blocks of a fixed-rate zfp stream in parallel (internal)
+ *
+ * Knows a stream of 4x4x4 blocks by its dimensions, bits per block and memory, and neither VTK's
+ * pipeline nor files. Work is given in layers of blocks (all blocks with the same z), so that callers
+ * can report progress in between.
+ *
+ * Why not zfp_compress() with zfp's OpenMP policy: that encodes into one buffer per thread, which one
+ * thread concatenates, and it has no parallel decoder. 64 blocks always fill whole 64-bit words
+ * (64*BlockBits bits), so threads that take blocks in groups of 64 write in place, and decode alike.
+ */
+#ifndef vtkZFPBlocks_h
+#define vtkZFPBlocks_h
+
+#include "vtkType.h"
+
+#include <limits> // for the empty range
+
+class vtkDataArray;
+
+class vtkZFPBlocks
+{
+public:
+  /**
+   * What was seen of the samples of some blocks.
+   */
+  struct Summary
+  {
+    float Minimum = std::numeric_limits<float>::infinity();
+    float Maximum = -std::numeric_limits<float>::infinity();
+    vtkTypeInt64 NaNs = 0;
+    vtkTypeInt64 Infinities = 0;
+
+    bool IsFinite() const { return this->NaNs == 0 && this->Infinities == 0; }
+    void Add(float value);
+    void Add(const Summary& other);
+  };
+
+  /**
+   * A stream in `words`, which holds vtkCompressedVolume::StreamBytesFor() bytes, aligned to 8.
+   * threads = 0: as many as OpenMP offers.
+   */
+  vtkZFPBlocks(const int dims[3], int blockBits, void* words, int threads);
+
+  vtkTypeInt64 GetNumberOfLayers() const { return this->Blocks[2]; }
+
+  /**
+   * Layers to work on between two progress events: about a hundredth of the volume, but enough blocks
+   * to keep the threads busy.
+   */
+  vtkTypeInt64 GetLayersPerStep() const;
+
+  /**
+   * Encode layers [first, last) from one component of an array that holds dims[0]*dims[1]*dims[2]
+   * tuples. Layers must be encoded in order, each once. As soon as a value that is not finite (as
+   * float32) has been seen, here or in `summary`, values are counted but no longer encoded.
+   */
+  void Encode(
+    vtkDataArray* array, int component, vtkTypeInt64 first, vtkTypeInt64 last, Summary& summary);
+
+  /**
+   * Decode layers [first, last) into an array of dims[0]*dims[1]*dims[2] floats.
+   */
+  void Decode(float* samples, vtkTypeInt64 first, vtkTypeInt64 last);
+
+  /**
+   * Decode layers [first, last) only to summarise the samples.
+   */
+  void Summarise(vtkTypeInt64 first, vtkTypeInt64 last, Summary& summary);
+
+private:
+  // A block's lowest sample and its number of samples per axis, fewer than 4 at the upper borders.
+  struct Block
+  {
+    vtkTypeInt64 Start[3];
+    int Size[3];
+    bool IsWhole() const { return this->Size[0] + this->Size[1] + this->Size[2] == 12; }
+  };
+  struct Codec;
+  template <typename ArrayT>
+  struct Encoder;
+  struct EncodeWorker;
+
+  Block GetBlock(vtkTypeInt64 index) const;
+  vtkTypeInt64 SampleIndex(const Block& block) const;
+  template <typename Body>
+  void ForEachBlock(vtkTypeInt64 first, vtkTypeInt64 last, Summary& summary, bool write, Body body);
+
+  vtkTypeInt64 Dimensions[3];
+  vtkTypeInt64 Blocks[3];
+  int BlockBits;
+  void* Words;
+  int Threads;
+};
+
+#endif
