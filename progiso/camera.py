@@ -1,0 +1,175 @@
+"""Cameras as plain values, and the orbit that every measurement uses."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A camera in world coordinates.
+
+    Parameters
+    ----------
+    position, focal_point, view_up : tuple of float
+        As in `vtkCamera`. `view_up` must not be parallel to the view direction.
+    view_angle : float, default: 30
+        Vertical opening of a perspective view in degrees, in (0, 180).
+    parallel : bool, default: False
+        Parallel instead of perspective projection.
+    parallel_scale : float, default: 1
+        Half the height of a parallel view in world units.
+
+    Examples
+    --------
+    >>> Camera((0, 0, 10), (0, 0, 0), (0, 1, 0)).parallel
+    False
+    """
+
+    position: tuple
+    focal_point: tuple
+    view_up: tuple
+    view_angle: float = 30.0
+    parallel: bool = False
+    parallel_scale: float = 1.0
+
+    @classmethod
+    def from_vtk(cls, camera):
+        """Copy a `vtkCamera`.
+
+        Returns
+        -------
+        Camera
+        """
+        return cls(
+            camera.GetPosition(),
+            camera.GetFocalPoint(),
+            camera.GetViewUp(),
+            camera.GetViewAngle(),
+            bool(camera.GetParallelProjection()),
+            camera.GetParallelScale(),
+        )
+
+    def apply(self, camera):
+        """Set a `vtkCamera` to this one; its clipping range is left to the renderer."""
+        camera.SetPosition(self.position)
+        camera.SetFocalPoint(self.focal_point)
+        camera.SetViewUp(self.view_up)
+        camera.SetViewAngle(self.view_angle)
+        camera.SetParallelProjection(self.parallel)
+        camera.SetParallelScale(self.parallel_scale)
+
+    def to_dict(self):
+        """The camera as JSON-ready values; `parallel_scale` only where it matters.
+
+        Returns
+        -------
+        dict
+        """
+        values = {k: list(v) if isinstance(v, tuple) else v for k, v in asdict(self).items()}
+        if not self.parallel:
+            del values["parallel_scale"]
+        return values
+
+
+def orbit_camera(target, i, n):
+    """Camera `i` of an orbit of `n` around a volume: the one definition that everything uses.
+
+    The positions lie on a Fibonacci sphere about the centre of the volume's axis-aligned bounds,
+    its radius 1.5 times the largest side of these bounds: y = (2i/n − 1) + 1/n, r = √(1 − y²),
+    φ = iπ(3 − √5), direction (r cos φ, y, r sin φ). The view angle is 50°, the focal point the
+    centre, and up is (0, 1, 0). As |y| ≤ 1 − 1/n, up is never parallel to the view.
+
+    Parameters
+    ----------
+    target : vtkmodules.vtkCommonDataModel.vtkImageData, vtkProp, or sequence of 6 float
+        What has bounds, or the bounds (xmin, xmax, ymin, ymax, zmin, zmax) in world units.
+    i : int
+        Position, from 0 to n − 1.
+    n : int
+        Number of positions, at least 1.
+
+    Returns
+    -------
+    Camera
+
+    Raises
+    ------
+    ValueError
+        When `i` or `n` is out of range or the bounds are empty.
+
+    Examples
+    --------
+    >>> orbit_camera((0, 2, 0, 2, 0, 2), 0, 1)
+    Camera(position=(4.0, 1.0, 1.0), focal_point=(1.0, 1.0, 1.0), view_up=(0.0, 1.0, 0.0), \
+view_angle=50.0, parallel=False, parallel_scale=1.0)
+    """
+    if n < 1 or not 0 <= i < n:
+        raise ValueError(f"orbit position {i}/{n}: it takes 0 ≤ I < N")
+    centre, sides = _centre_and_sides(target)
+    radius = 1.5 * max(sides)
+    y = (2 * i / n - 1) + 1 / n
+    r = math.sqrt(1 - y * y)
+    phi = i * math.pi * (3 - math.sqrt(5))
+    direction = (r * math.cos(phi), y, r * math.sin(phi))
+    position = tuple(c + radius * d for c, d in zip(centre, direction))
+    return Camera(position, centre, (0.0, 1.0, 0.0), 50.0)
+
+
+def view_camera(target, direction=(0.45, -1.0, 0.3), view_up=(0.0, 0.0, 1.0), parallel=False):
+    """Camera that sees a whole volume from a direction.
+
+    Parameters
+    ----------
+    target : vtkmodules.vtkCommonDataModel.vtkImageData, vtkProp, or sequence of 6 float
+        What has bounds, or the bounds, in world units.
+    direction : sequence of 3 float, default: (0.45, -1, 0.3)
+        From the volume's centre to the camera; any length. The default looks a patient of a scan
+        in left-posterior-superior coordinates in the face, a little from the left and above.
+    view_up : sequence of 3 float, default: (0, 0, 1)
+        What is up in the picture; not parallel to `direction`.
+    parallel : bool, default: False
+        Parallel projection instead of perspective with a view angle of 30°.
+
+    Returns
+    -------
+    Camera
+
+    Raises
+    ------
+    ValueError
+        When the directions are zero or parallel, or the bounds are empty.
+
+    Examples
+    --------
+    >>> view_camera((-1, 1, -1, 1, -1, 1), direction=(1, 0, 0)).focal_point
+    (0.0, 0.0, 0.0)
+    """
+    centre, sides = _centre_and_sides(target)
+    length = math.hypot(*direction)
+    if not length > 0 or not _sine(direction, view_up) > 1e-6:
+        raise ValueError(f"the view direction {direction} and up {view_up} must not be parallel or zero")
+    radius = 0.5 * math.hypot(*sides)
+    distance = radius / math.sin(math.radians(15))
+    position = tuple(c + distance * d / length for c, d in zip(centre, direction))
+    return Camera(position, centre, tuple(map(float, view_up)), 30.0, parallel, radius)
+
+
+def _centre_and_sides(target):
+    """Centre and side lengths of bounds, or of what has bounds."""
+    bounds = target.GetBounds() if hasattr(target, "GetBounds") else target
+    if len(bounds) != 6:
+        raise ValueError(f"bounds are six numbers, got {len(bounds)}")
+    low, high = bounds[0::2], bounds[1::2]
+    sides = tuple(float(b - a) for a, b in zip(low, high))
+    if not all(math.isfinite(side) for side in sides) or min(sides) < 0 or max(sides) == 0:
+        raise ValueError(f"the bounds {tuple(bounds)} are empty")
+    return tuple(float(a + b) / 2 for a, b in zip(low, high)), sides
+
+
+def _sine(a, b):
+    """Sine of the angle between two vectors, 0 when one is zero."""
+    cross = (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+    lengths = math.hypot(*a) * math.hypot(*b)
+    return math.hypot(*cross) / lengths if lengths > 0 else 0.0

@@ -1,0 +1,169 @@
+"""Compressing and decompressing images, as plain functions over the VTK filters."""
+
+from __future__ import annotations
+
+from ._vtk import image_data, observe_progress, vtk_errors
+from .vtkProgIsoFilters import vtkCompressedVolume, vtkImageZFPCompress, vtkImageZFPDecompress
+
+_POINTS, _CELLS = 0, 1  # vtkDataObject::FieldAssociations
+
+
+def compress(image, rate=8.0, array=None, component=0, threads=0, progress=None):
+    """Compress one array of an image with fixed-rate ZFP.
+
+    Parameters
+    ----------
+    image : vtkmodules.vtkCommonDataModel.vtkImageData
+        At least 2 samples along every axis.
+    rate : float, default: 8
+        Bits per sample, in (0, 32]; zfp rounds it to whole bits per block of 64 samples, at
+        least 9 of them.
+    array : str, optional
+        Point or cell array to compress; by default the active point scalars, else the first
+        point array, else the active cell scalars, else the first cell array.
+    component : int, default: 0
+        Component of that array.
+    threads : int, default: 0
+        Threads that encode; 0 for one per core.
+    progress : callable, optional
+        Called with the fraction done, from 0 to 1.
+
+    Returns
+    -------
+    vtkmodules.vtkCommonDataModel.vtkImageData
+        A compressed volume: the same geometry and no scalars, the stream in the field data.
+        Any VTI writer stores it.
+
+    Raises
+    ------
+    TypeError
+        When `image` is no image.
+    ValueError
+        When there is no such array.
+    RuntimeError
+        When the filter refuses: rate or component out of range, a flat image, NaN or infinite
+        samples, an image that is compressed already.
+
+    Examples
+    --------
+    >>> import numpy as np, progiso
+    >>> image = progiso.image_from_array(np.arange(512.0), (8, 8, 8))
+    >>> volume = progiso.compress(image, rate=4)
+    >>> progiso.is_compressed(volume)
+    True
+    """
+    if is_compressed(image_data(image)):
+        raise RuntimeError("cannot compress: the image is a compressed volume already")
+    compressor = vtkImageZFPCompress()
+    compressor.SetInputData(image)
+    compressor.SetRate(rate)
+    compressor.SetComponent(component)
+    compressor.SetNumberOfThreads(threads)
+    if array is not None:
+        compressor.SetInputArrayToProcess(0, 0, 0, _association(image, array), array)
+    observe_progress(compressor, progress)
+    with vtk_errors("cannot compress"):
+        compressor.Update()
+    return compressor.GetOutput()
+
+
+def _association(image, array):
+    """Whether an array's values belong to points or cells."""
+    points, cells = image.GetPointData(), image.GetCellData()
+    if points.HasArray(array):
+        return _POINTS
+    if cells.HasArray(array):
+        return _CELLS
+    names = [d.GetArrayName(i) for d in (points, cells) for i in range(d.GetNumberOfArrays())]
+    listed = ", ".join(repr(name) for name in names) or "none"
+    raise ValueError(f"the image has no array {array!r}; it has: {listed}")
+
+
+def decompress(image, threads=0, progress=None):
+    """Decompress a compressed volume into float32 scalars.
+
+    Parameters
+    ----------
+    image : vtkmodules.vtkCommonDataModel.vtkImageData
+        A compressed volume.
+    threads : int, default: 0
+        Threads that decode; 0 for one per core.
+    progress : callable, optional
+        Called with the fraction done, from 0 to 1.
+
+    Returns
+    -------
+    vtkmodules.vtkCommonDataModel.vtkImageData
+        The same geometry, with the values under the original array's name as point or cell
+        scalars.
+
+    Raises
+    ------
+    TypeError
+        When `image` is no image.
+    RuntimeError
+        When it is not a (valid) compressed volume.
+
+    Examples
+    --------
+    >>> import numpy as np, progiso
+    >>> image = progiso.image_from_array(np.arange(512.0), (8, 8, 8), "ramp")
+    >>> progiso.decompress(progiso.compress(image)).GetPointData().GetScalars().GetName()
+    'ramp'
+    """
+    decompressor = vtkImageZFPDecompress()
+    decompressor.SetInputData(image_data(image))
+    decompressor.SetNumberOfThreads(threads)
+    observe_progress(decompressor, progress)
+    with vtk_errors("cannot decompress"):
+        decompressor.Update()
+    return decompressor.GetOutput()
+
+
+def is_compressed(image):
+    """Tell whether a data object claims to be a compressed volume.
+
+    Examples
+    --------
+    >>> import numpy as np, progiso
+    >>> progiso.is_compressed(progiso.image_from_array(np.arange(512.0), (8, 8, 8)))
+    False
+    """
+    return bool(vtkCompressedVolume.IsCompressed(image))
+
+
+def describe(image):
+    """Describe a compressed volume by its metadata.
+
+    Parameters
+    ----------
+    image : vtkmodules.vtkCommonDataModel.vtkImageData
+        A compressed volume.
+
+    Returns
+    -------
+    dict
+        ``rate`` (bits per sample), ``block_bits``, ``samples`` per axis, ``blocks`` in total,
+        ``stream_bytes``, ``range``, ``array``, ``component``, ``association`` ("point" or
+        "cell") and ``scalar_type`` (VTK's number of the original type).
+
+    Raises
+    ------
+    ValueError
+        When the metadata is missing, inconsistent or truncated; the message says what.
+    """
+    volume = vtkCompressedVolume()
+    if not volume.Read(image_data(image)):
+        raise ValueError(f"not a valid compressed volume: {volume.GetErrorMessage()}")
+    return {
+        "rate": volume.GetRate(),
+        "block_bits": volume.GetBlockBits(),
+        "samples": list(volume.GetDimensions()),
+        "blocks": volume.GetNumberOfBlocks(),
+        "stream_bytes": volume.GetStream().GetNumberOfValues(),
+        "range": list(volume.GetRange()),
+        "array": volume.GetArrayName(),
+        "component": volume.GetComponent(),
+        "association": "cell" if volume.GetAssociation() else "point",
+        "scalar_type": volume.GetScalarType(),
+    }

@@ -1,0 +1,89 @@
+"""Images from arrays: origin, spacing and direction in one place."""
+
+from __future__ import annotations
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonDataModel import vtkImageData
+
+
+def image_from_array(values, dimensions, name="scalars", components=1):
+    """Wrap samples as the active point scalars of a `vtkImageData`, without copying them.
+
+    Parameters
+    ----------
+    values : numpy.ndarray
+        ``prod(dimensions) * components`` values, x fastest; any native numeric type. A
+        read-only memory map is fine as long as nothing writes to the image's scalars.
+    dimensions : sequence of int
+        Samples along x, y and z.
+    name : str, default: "scalars"
+        Name of the array.
+    components : int, default: 1
+        Values per sample.
+
+    Returns
+    -------
+    vtkmodules.vtkCommonDataModel.vtkImageData
+        With unit spacing and its origin at zero.
+
+    Raises
+    ------
+    ValueError
+        When the number of values does not fit the dimensions.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> image = image_from_array(np.arange(24.0), (4, 3, 2))
+    >>> image.GetDimensions()
+    (4, 3, 2)
+    """
+    count = int(np.prod(dimensions, dtype=np.int64)) * components
+    if values.size != count:
+        shape = "x".join(map(str, dimensions))
+        raise ValueError(f"{shape} samples of {components} need {count} values, got {values.size}")
+    flat = values.reshape(-1, components) if components > 1 else values.reshape(-1)
+    array = numpy_to_vtk(flat)
+    array.SetName(name)
+    image = vtkImageData()
+    image.SetDimensions([int(n) for n in dimensions])
+    image.GetPointData().SetScalars(array)
+    return image
+
+
+def set_axes(image, axes, origin):
+    """Place an image in the world by the vectors from one sample to the next.
+
+    Parameters
+    ----------
+    image : vtkmodules.vtkCommonDataModel.vtkImageData
+        Changed in place: spacing, direction matrix and origin.
+    axes : array_like, shape (3, 3)
+        Column *j* is the world vector from a sample to its neighbour along axis *j*. Any
+        invertible matrix: rotations, reflections and shears are all kept.
+    origin : array_like, shape (3,)
+        World position of sample (0, 0, 0).
+
+    Raises
+    ------
+    ValueError
+        When the vectors do not span space or are not finite.
+    """
+    axes, origin = np.asarray(axes, float), np.asarray(origin, float)
+    spacing = np.linalg.norm(axes, axis=0)
+    if not (np.isfinite(axes).all() and np.isfinite(origin).all() and (spacing > 0).all()):
+        raise ValueError(f"the image's axes {axes.tolist()} or origin {origin.tolist()} are unusable")
+    direction = axes / spacing
+    if abs(np.linalg.det(direction)) < 1e-6:
+        raise ValueError(f"the image's axes {axes.tolist()} do not span space")
+    image.SetSpacing(*spacing)
+    image.SetOrigin(*origin)
+    image.SetDirectionMatrix(*direction.ravel())
+
+
+def axes_of(image):
+    """World vectors between neighbouring samples, as columns; the inverse of `set_axes`."""
+    matrix = image.GetDirectionMatrix()
+    direction = np.array([[matrix.GetElement(i, j) for j in range(3)] for i in range(3)])
+    return direction * np.asarray(image.GetSpacing())

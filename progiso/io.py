@@ -1,0 +1,233 @@
+"""Reading and writing volumes of every kind under one name each: `read` and `save`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from vtkmodules.vtkIOImage import vtkImageReader2Factory
+from vtkmodules.vtkIOLegacy import vtkDataSetReader
+from vtkmodules.vtkIOXML import (
+    vtkXMLImageDataReader,
+    vtkXMLImageDataWriter,
+    vtkXMLPImageDataReader,
+)
+
+from ._files import atomic_path
+from ._vtk import image_data, observe_progress, vtk_errors
+from .compression import is_compressed
+from .metaimage import read_metaimage, write_metaimage
+from .nifti import read_nibabel, read_nifti, write_nifti
+from .nrrd import read_nrrd
+from .raw import read_raw, write_raw
+from .vtkProgIsoFilters import vtkZFPReader, vtkZFPWriter
+
+
+def read(path, dimensions=None, rate=None, progress=None):
+    """Read a volume from a file.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        By its suffix: ``.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .nii.gz .zfp``, ``.raw`` named
+        ``name_WxHxD_type.raw``, other image formats that VTK reads, and those that nibabel reads.
+    dimensions : sequence of int, optional
+        Samples along x, y and z of a ``.zfp`` file without header.
+    rate : float, optional
+        Bits per sample of a ``.zfp`` file without header.
+    progress : callable, optional
+        Called with the fraction done, from 0 to 1, while VTK reads.
+
+    Returns
+    -------
+    vtkmodules.vtkCommonDataModel.vtkImageData
+        Plain or compressed. Raw files are memory-mapped: do not write to their scalars.
+
+    Raises
+    ------
+    FileNotFoundError
+        When there is no such file.
+    ValueError, RuntimeError
+        When the file is damaged, of an unknown kind, or no image; the message names the file.
+    ImportError
+        When only nibabel can read it, and it is not installed.
+
+    Examples
+    --------
+    >>> import progiso
+    >>> from progiso.data import fetch
+    >>> progiso.read(fetch("sphere", size=16)).GetDimensions()
+    (16, 16, 16)
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise FileNotFoundError(f"there is no file '{path}'")
+    suffix = suffix_of(path)
+    if suffix == ".zfp":
+        return _read_zfp(path, dimensions, rate)
+    if suffix in _VTK_READERS:
+        image = _read_with(_VTK_READERS[suffix](), path, progress)
+    else:
+        image = _READERS.get(suffix, _read_other)(path)
+    return _checked(image, path)
+
+
+def suffix_of(path):
+    """Lower-case suffix of a path, ``.nii.gz`` counting as one.
+
+    Examples
+    --------
+    >>> suffix_of("brain.NII.gz")
+    '.nii.gz'
+    """
+    name = Path(path).name.lower()
+    return ".nii.gz" if name.endswith(".nii.gz") else Path(name).suffix
+
+
+def _read_with(reader, path, progress=None):
+    """Run a VTK reader on a file."""
+    observe_progress(reader, progress)
+    with vtk_errors(f"cannot read '{path}'"):
+        reader.SetFileName(str(path))
+        reader.Update()
+    return reader.GetOutputDataObject(0)
+
+
+def _read_zfp(path, dimensions, rate):
+    """Read zfp's own format; without header it cannot be told apart from anything else."""
+    reader = vtkZFPReader()
+    if dimensions is not None:
+        reader.SetDataDimensions([int(n) for n in dimensions])
+        reader.SetRate(8.0 if rate is None else rate)
+    elif not reader.CanReadFile(str(path)):
+        raise ValueError(
+            f"'{path}' has no zfp header of a fixed-rate 3-D float32 array; give dimensions and "
+            "rate of a file without header"
+        )
+    reader.SetArrayName(path.stem)
+    return _read_with(reader, path)
+
+
+def _read_other(path):
+    """Ask VTK's image readers, then nibabel."""
+    reader = vtkImageReader2Factory.CreateImageReader2(str(path))
+    if reader is not None:
+        return _read_with(reader, path)
+    try:
+        return read_nibabel(path)
+    except ImportError as error:
+        known = ", ".join((*_VTK_READERS, *_READERS, ".zfp"))
+        raise ValueError(f"do not know how to read '{path}' (known: {known}); {error}") from None
+
+
+def _checked(image, path):
+    """Refuse what is no volume, with the file's name."""
+    if image is None or not image.IsA("vtkImageData"):
+        kind = "nothing" if image is None else f"a {image.GetClassName()}"
+        raise ValueError(f"'{path}' holds {kind}, not an image (vtkImageData)")
+    if image.GetNumberOfPoints() == 0:
+        raise ValueError(f"'{path}' holds an empty image")
+    return image
+
+
+_VTK_READERS = {
+    ".vti": vtkXMLImageDataReader,
+    ".pvti": vtkXMLPImageDataReader,
+    ".vtk": vtkDataSetReader,
+}
+_READERS = {
+    ".mha": read_metaimage,
+    ".mhd": read_metaimage,
+    ".nrrd": read_nrrd,
+    ".nhdr": read_nrrd,
+    ".nii": read_nifti,
+    ".nii.gz": read_nifti,
+    ".raw": read_raw,
+}
+
+
+def save(image, path, progress=None):
+    """Write a volume to a file, which appears under its name only when it is complete.
+
+    Parameters
+    ----------
+    image : vtkmodules.vtkCommonDataModel.vtkImageData
+        Plain, or compressed (for ``.vti`` and ``.zfp``).
+    path : str or os.PathLike
+        ``.vti`` keeps everything. ``.zfp`` keeps a compressed volume's stream alone. ``.mha``,
+        ``.nii`` and ``.nii.gz`` keep the active point scalars with the geometry, ``.raw`` (named
+        ``name_WxHxD_type.raw``) the active point scalars alone.
+    progress : callable, optional
+        Called with the fraction done, from 0 to 1, while a ``.vti`` is written.
+
+    Raises
+    ------
+    ValueError
+        When the suffix is unknown or the format cannot hold this image.
+    FileNotFoundError
+        When the folder does not exist.
+    RuntimeError
+        When writing fails; nothing is left behind.
+
+    Examples
+    --------
+    >>> progiso.save(progiso.compress(image, rate=4), "skull.vti")
+    """
+    suffix = suffix_of(path)
+    if suffix not in _WRITERS:
+        raise ValueError(f"do not know how to write '{path}': use one of {', '.join(_WRITERS)}")
+    compressed = is_compressed(image_data(image))
+    if suffix == ".zfp" and not compressed:
+        raise ValueError(f"'{path}': a .zfp file holds a compressed volume, compress the image first")
+    if suffix not in (".vti", ".zfp"):
+        _check_plain(image, path, compressed)
+    with atomic_path(path) as temporary:
+        if suffix == ".vti":
+            _write_vti(image, temporary, progress)
+        else:
+            _WRITERS[suffix](image, temporary)
+
+
+def _check_plain(image, path, compressed):
+    """Formats for plain scalars need them at the points."""
+    if compressed:
+        raise ValueError(f"'{path}': only .vti and .zfp hold a compressed volume, decompress it first")
+    if image.GetPointData().GetScalars() is None:
+        raise ValueError(f"'{path}': the image has no active point scalars; .vti holds other arrays")
+
+
+def _write_vti(image, path, progress=None):
+    """Raw appended data, not squeezed a second time when it is a compressed stream."""
+    writer = vtkXMLImageDataWriter()
+    writer.SetInputData(image)
+    writer.SetDataModeToAppended()
+    writer.EncodeAppendedDataOff()
+    writer.SetHeaderTypeToUInt64()
+    if is_compressed(image):
+        writer.SetCompressorTypeToNone()
+    observe_progress(writer, progress)
+    _write_with(writer, path)
+
+
+def _write_with(writer, path):
+    """Run a VTK writer that reports failure by an error or by returning 0."""
+    with vtk_errors(f"cannot write '{path.name}'"):
+        writer.SetFileName(str(path))
+        written = writer.Write()
+    if not written:
+        raise RuntimeError(f"cannot write '{path.name}'")
+
+
+def _write_zfp(image, path):
+    writer = vtkZFPWriter()
+    writer.SetInputData(image)
+    _write_with(writer, path)
+
+
+_WRITERS = {
+    ".vti": _write_vti,
+    ".zfp": _write_zfp,
+    ".mha": write_metaimage,
+    ".nii": write_nifti,
+    ".nii.gz": write_nifti,
+    ".raw": write_raw,
+}

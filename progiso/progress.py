@@ -1,0 +1,37 @@
+"""A progress bar on standard error, for people only."""
+
+from __future__ import annotations
+
+import sys
+from contextlib import contextmanager
+
+
+@contextmanager
+def progress_bar(description):
+    """Show a bar while the block runs.
+
+    Parameters
+    ----------
+    description : str
+        What is being done.
+
+    Yields
+    ------
+    callable or None
+        To be called with the fraction done, from 0 to 1. None when standard error is not a
+        terminal: nothing is shown then.
+
+    Examples
+    --------
+    >>> with progress_bar("Compressing") as progress:
+    ...     progiso.compress(image, progress=progress)
+    """
+    if not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(description, total=1.0)
+        yield lambda fraction: bar.update(task, completed=fraction)

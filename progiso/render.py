@@ -1,0 +1,204 @@
+"""Rendering one image off screen with plain VTK: what the command line and the tests use."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonColor import vtkNamedColors
+from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkIOImage import vtkPNGWriter
+from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
+
+from ._files import atomic_path
+from ._vtk import image_data, vtk_errors
+from .camera import orbit_camera, view_camera
+from .compression import compress, is_compressed
+from .isosurface import make_isosurface
+from .statistics import depth, statistics
+
+_HEX = re.compile("#[0-9a-fA-F]{6}")
+
+#: Largest width and height of an image in pixels.
+MAX_SIZE = 16384
+
+
+@dataclass(frozen=True)
+class RenderResult:
+    """A rendered isosurface.
+
+    Attributes
+    ----------
+    image : numpy.ndarray of uint8, shape (height, width, 3)
+        Row 0 is the top.
+    depth : numpy.ndarray of float32, shape (height, width)
+        See `progiso.depth`.
+    statistics : dict
+        See `progiso.statistics`, with ``camera`` and ``size``.
+    """
+
+    image: np.ndarray
+    depth: np.ndarray
+    statistics: dict
+
+
+def render(
+    image,
+    isovalue,
+    size=(1280, 720),
+    orbit=None,
+    camera=None,
+    rate=8.0,
+    array=None,
+    component=0,
+    speculation=True,
+    color="oldlace",
+    background="#20242b",
+    progress=None,
+):
+    """Render an isosurface off screen until it is complete.
+
+    Parameters
+    ----------
+    image : vtkmodules.vtkCommonDataModel.vtkImageData
+        Plain, or a compressed volume.
+    isovalue : float
+        In the units of the image's values.
+    size : tuple of int, default: (1280, 720)
+        Width and height in pixels, 1 to 16384 each.
+    orbit : tuple of int, optional
+        Camera ``(i, n)`` of `orbit_camera`; not together with `camera`.
+    camera : Camera, optional
+        By default `view_camera` of the image.
+    rate : float, default: 8
+        Bits per sample for a plain image, which is compressed first.
+    array, component : str, int
+        What to compress of a plain image, see `compress`.
+    speculation : bool or int, default: True
+        Whether rays test several blocks ahead in one pass, or how many at most (1 to 64).
+    color, background : str or sequence of 3 float
+        A colour's name, ``#rrggbb``, or red, green and blue from 0 to 1.
+    progress : callable, optional
+        Called with the fraction done, from 0 to 1, while a plain image is compressed.
+
+    Returns
+    -------
+    RenderResult
+
+    Raises
+    ------
+    ValueError
+        When an argument is out of its range.
+    RuntimeError
+        When there is no usable OpenGL 4.3, or VTK reports an error.
+
+    Examples
+    --------
+    >>> import progiso
+    >>> from progiso.data import fetch
+    >>> result = progiso.render(progiso.read(fetch("sphere", size=64)), 0.5, size=(320, 240))
+    >>> result.image.shape, result.statistics["converged"]
+    ((240, 320, 3), True)
+    """
+    width, height = _checked_size(size)
+    if orbit is not None and camera is not None:
+        raise ValueError("give either an orbit or a camera, not both")
+    if orbit is not None:
+        camera = orbit_camera(image, *orbit)
+    if not is_compressed(image_data(image)):
+        image = compress(image, rate, array, component, progress=progress)
+    volume = make_isosurface(image, isovalue, parse_color(color), speculation=speculation)
+    window, renderer = _scene(volume, width, height, parse_color(background))
+    (camera or view_camera(image)).apply(renderer.GetActiveCamera())
+    renderer.ResetCameraClippingRange()
+    with vtk_errors("cannot render"):
+        window.Render()
+    _check_opengl(window)
+    mapper = volume.GetMapper()
+    result = RenderResult(_pixels(window, width, height), depth(mapper), statistics(mapper, renderer))
+    window.Finalize()
+    return result
+
+
+def _checked_size(size):
+    width, height = (int(n) for n in size)
+    if not (1 <= width <= MAX_SIZE and 1 <= height <= MAX_SIZE):
+        raise ValueError(f"size {width}x{height}: width and height must be 1 to {MAX_SIZE} pixels")
+    return width, height
+
+
+def parse_color(color):
+    """Red, green and blue from a name, ``#rrggbb`` or three numbers from 0 to 1.
+
+    Raises
+    ------
+    ValueError
+        When it is none of these.
+
+    Examples
+    --------
+    >>> parse_color("#ff0000")
+    (1.0, 0.0, 0.0)
+    """
+    if isinstance(color, str):
+        known = bool(_HEX.fullmatch(color)) or vtkNamedColors().ColorExists(color)
+        rgba = vtkNamedColors().HTMLColorToRGBA(color) if known else (0, 0, 0)
+        rgb = tuple(rgba[i] / 255 for i in range(3))
+    else:
+        rgb = tuple(float(c) for c in color)
+        known = len(rgb) == 3 and all(0 <= c <= 1 for c in rgb)
+    if not known:
+        raise ValueError(f"unknown colour {color!r}: give a name, #rrggbb or 3 numbers from 0 to 1")
+    return rgb
+
+
+def _scene(volume, width, height, background):
+    """An off-screen window with one volume in it."""
+    renderer, window = vtkRenderer(), vtkRenderWindow()
+    renderer.SetBackground(background)
+    renderer.AddVolume(volume)
+    window.SetOffScreenRendering(True)
+    window.SetMultiSamples(0)
+    window.SetSize(width, height)
+    window.AddRenderer(renderer)
+    return window, renderer
+
+
+def _check_opengl(window):
+    """VTK goes on without a context; say so instead of returning a black picture."""
+    if not window.SupportsOpenGL():
+        raise RuntimeError(
+            f"no usable OpenGL context ({window.GetClassName()}); install libosmesa6 or a GPU "
+            "driver with EGL, or set DISPLAY or VTK_DEFAULT_OPENGL_WINDOW"
+        )
+
+
+def _pixels(window, width, height):
+    """The window's colours, top row first."""
+    pixels = vtkUnsignedCharArray()
+    window.GetPixelData(0, 0, width - 1, height - 1, 1, pixels)
+    return np.ascontiguousarray(vtk_to_numpy(pixels).reshape(height, width, 3)[::-1])
+
+
+def write_png(pixels, path):
+    """Write an image as PNG.
+
+    Parameters
+    ----------
+    pixels : numpy.ndarray of uint8, shape (height, width, 3)
+        Row 0 is the top.
+    path : str or os.PathLike
+        Replaced at once when the file is complete.
+    """
+    image = vtkImageData()
+    image.SetDimensions(pixels.shape[1], pixels.shape[0], 1)
+    scalars = numpy_to_vtk(np.ascontiguousarray(pixels[::-1]).reshape(-1, 3))
+    image.GetPointData().SetScalars(scalars)
+    writer = vtkPNGWriter()
+    writer.SetInputData(image)
+    with atomic_path(path) as temporary, vtk_errors(f"cannot write '{path}'"):
+        writer.SetFileName(str(temporary))
+        writer.Write()

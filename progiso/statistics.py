@@ -1,0 +1,120 @@
+"""The mapper's statistics and depth as Python values."""
+
+from __future__ import annotations
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData
+
+from .camera import Camera
+
+#: What is known of every pass, in this order.
+PASS_KEYS = (
+    "pass",
+    "active_rays",
+    "speculation",
+    "pairs",
+    "visible_blocks",
+    "active_blocks",
+    "decoded_blocks",
+    "cached_blocks",
+    "completed",
+    "elapsed_ms",
+)
+_FRACTIONAL = ("completed", "elapsed_ms")
+
+
+def statistics(mapper, renderer=None):
+    """Collect a mapper's statistics of its last image, ready for JSON.
+
+    Parameters
+    ----------
+    mapper : vtkProgressiveIsosurfaceMapper
+        After a render.
+    renderer : vtkmodules.vtkRenderingCore.vtkRenderer, optional
+        Adds the keys ``camera`` and ``size``.
+
+    Returns
+    -------
+    dict
+        ``passes``
+            One dict a pass, with the keys of `PASS_KEYS`: counts, ``completed`` from 0 to 1 and
+            ``elapsed_ms``.
+        ``total_ms``
+            Milliseconds over all passes.
+        ``memory``
+            GPU memory in bytes: ``buffers`` {name: bytes}, their ``total``, and ``compressed``,
+            the part of it that is the compressed stream.
+        ``stages``, ``left_out``
+            Names of the stages that ran, and of those that the scene did not need.
+        ``converged``
+            Whether the image is complete.
+        ``gl``
+            The OpenGL implementation.
+        ``camera``, ``size``
+            See `Camera.to_dict`; width and height in pixels.
+
+    Examples
+    --------
+    >>> result = progiso.render(image, isovalue=226)
+    >>> result.statistics["converged"]
+    True
+    """
+    source = mapper.GetStatistics()
+    names = range(source.GetNumberOfBuffers())
+    values = {
+        "passes": [_pass_values(source, i) for i in range(source.GetNumberOfPasses())],
+        "total_ms": source.GetTotalMilliseconds(),
+        "memory": {
+            "buffers": {source.GetBufferName(i): source.GetBufferBytes(i) for i in names},
+            "total": source.GetTotalBytes(),
+            "compressed": source.GetCompressedBytes(),
+        },
+        "stages": [source.GetStage(i) for i in range(source.GetNumberOfStages())],
+        "left_out": [source.GetStageLeftOut(i) for i in range(source.GetNumberOfStagesLeftOut())],
+        "converged": bool(source.GetConverged()),
+        "gl": source.GetGLDescription(),
+    }
+    if renderer is not None:
+        values["camera"] = Camera.from_vtk(renderer.GetActiveCamera()).to_dict()
+        values["size"] = list(renderer.GetSize())
+    return values
+
+
+def _pass_values(source, i):
+    values = {key: source.GetPassValue(i, key) for key in PASS_KEYS}
+    whole = {key: int(v) for key, v in values.items() if key not in _FRACTIONAL and v == int(v)}
+    return {**values, **whole}
+
+
+def depth(mapper):
+    """Distances from the camera to the surface in a mapper's last image.
+
+    Parameters
+    ----------
+    mapper : vtkProgressiveIsosurfaceMapper
+        After a render.
+
+    Returns
+    -------
+    numpy.ndarray of float32, shape (height, width)
+        World units along the ray through each pixel's centre, from the camera's position (with
+        parallel projection from the camera's plane); ``inf`` where nothing is hit. Row 0 is the
+        top of the image.
+
+    Raises
+    ------
+    RuntimeError
+        When nothing has been rendered yet.
+
+    Examples
+    --------
+    >>> distances = progiso.depth(volume.GetMapper())
+    >>> distances[np.isfinite(distances)].min()
+    """
+    image = vtkImageData()
+    if not mapper.GetDepthImage(image):
+        raise RuntimeError("the mapper has no depth yet: render first")
+    width, height, _ = image.GetDimensions()
+    rows = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width)
+    return np.ascontiguousarray(rows[::-1], np.float32)
