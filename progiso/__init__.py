@@ -10,9 +10,15 @@ pyvista.
 
 from __future__ import annotations
 
-from ._after_import import after_import
-from ._built import VERSION as __version__
-from ._built import VTK_VERSION as _VTK_VERSION
+from pkgutil import extend_path
+
+# In a checkout's root, `python -m progiso` finds these sources before the installed package: let them
+# share its compiled modules. Elsewhere this adds nothing.
+__path__ = extend_path(__path__, __name__)
+
+from ._after_import import after_import  # noqa: E402
+from ._built import VERSION as __version__  # noqa: E402
+from ._built import VTK_VERSION as _VTK_VERSION  # noqa: E402
 
 try:
     from vtkmodules.vtkCommonCore import vtkVersion
