@@ -1,0 +1,36 @@
+"""Cell data, several arrays, and components."""
+
+from common import *
+
+load_plugin(globals())
+view = make_view()
+wavelet = make_wavelet(16)
+cells = simple.PointDatatoCellData(Input=wavelet)
+display = show_isosurface(cells, view, Isovalue=150.0)
+assert list(display.IsosurfaceArray) == ["CELLS", "RTData"], list(display.IsosurfaceArray)
+look(view)
+shown = screenshot(view, "cells.png")
+check_converged(display)
+assert covered(shown) > 0.1
+simple.Hide(cells, view)
+
+# compressed cell data: the same image
+compressed = ZFPCompress(Input=cells, Rate=8)
+assert list(compressed.SelectInputArray) == ["CELLS", "RTData"], list(compressed.SelectInputArray)
+show_isosurface(compressed, view, Isovalue=150.0)
+check_same(shown, screenshot(view, "cells_compressed.png"))
+simple.Hide(compressed, view)
+
+# a second array, chosen in place of the first
+second = simple.Calculator(Input=wavelet, ResultArrayName="negative", Function="-RTData")
+display = show_isosurface(second, view, IsosurfaceArray=["POINTS", "negative"])
+values = second.PointData["negative"].GetRange()
+check_close(simple.servermanager.vtkSMPropertyHelper(display.SMProxy, "Isovalue").GetAsDouble(), display.Isovalue, "isovalue")
+display.Isovalue = -150.0
+chosen = screenshot(view, "second_array.png")
+assert covered(chosen) > 0.1
+display.IsosurfaceArray = ["POINTS", "RTData"]
+display.Isovalue = 150.0
+check_same(chosen, screenshot(view, "first_array.png"), tolerance=1)
+
+finish(covered=covered(shown), range=values)

@@ -1,0 +1,128 @@
+"""What the ParaView scripts share. Every script runs as `pvpython SCRIPT BUILD OUTPUT`: BUILD is the build directory that holds
+the plugin, OUTPUT the folder for images and files. A script fails with an exception; its last line is one JSON object."""
+
+import json
+import math
+import pathlib
+import sys
+
+import numpy
+from paraview import servermanager, simple
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOImage import vtkPNGReader
+
+BUILD = pathlib.Path(sys.argv[1])
+OUTPUT = pathlib.Path(sys.argv[2])
+PROGRESSIVE_ISOSURFACE = "Progressive Isosurface"
+SIZE = [320, 240]
+
+
+def load_plugin(namespace):
+    """Load the plugin of the build directory and put its proxies into `namespace`."""
+    found = sorted(BUILD.glob("lib*/**/plugins/ProgIso/ProgIso.so"))
+    if len(found) != 1:
+        raise FileNotFoundError(f"one ProgIso.so expected under {BUILD}, found {len(found)}")
+    simple.LoadPlugin(str(found[0]), remote=False, ns=namespace)
+    OUTPUT.mkdir(parents=True, exist_ok=True)
+
+
+def make_view(size=SIZE):
+    """A render view of fixed size, plain background and no decoration."""
+    view = simple.CreateView("RenderView")
+    view.ViewSize = list(size)
+    view.OrientationAxesVisibility = 0
+    view.UseColorPaletteForBackground = 0
+    view.Background = [0.1, 0.1, 0.15]
+    return view
+
+
+def make_wavelet(half=24):
+    """ParaView's own test image with 2 * half + 1 samples per axis."""
+    return simple.Wavelet(WholeExtent=[-half, half] * 3)
+
+
+def show_isosurface(source, view, **properties):
+    """Show `source` as progressive isosurface."""
+    display = simple.Show(source, view)
+    display.SetRepresentationType(PROGRESSIVE_ISOSURFACE)
+    for name, value in properties.items():
+        setattr(display, name, value)
+    return display
+
+
+def look(view, azimuth=30, elevation=20):
+    """Show all of the scene from a fixed direction."""
+    camera = view.GetActiveCamera()
+    camera.SetFocalPoint(0, 0, 0)
+    camera.SetPosition(0, 0, 1)
+    camera.SetViewUp(0, 1, 0)
+    camera.Azimuth(azimuth)
+    camera.Elevation(elevation)
+    simple.ResetCamera(view)
+
+
+def information(display):
+    """The representation's information properties."""
+    display.SMProxy.UpdatePropertyInformation()
+    names = {
+        "passes": "NumberOfPasses",
+        "completed": "CompletedFraction",
+        "total_ms": "TotalMilliseconds",
+        "bytes": "GPUBytes",
+        "compressed": "CompressedBytes",
+    }
+    # vtkSMPropertyHelper reads them whatever Python makes of an information property
+    return {key: servermanager.vtkSMPropertyHelper(display.SMProxy, name).GetAsDouble() for key, name in names.items()}
+
+
+def check_converged(display):
+    """The information of a complete image; fails when it is not complete or a figure is missing."""
+    info = information(display)
+    assert info["completed"] == 1.0, info
+    assert info["passes"] >= 1 and info["total_ms"] > 0, info
+    assert info["bytes"] > info["compressed"] > 0, info
+    return info
+
+
+def screenshot(view, name):
+    """Save a screenshot in OUTPUT and return its pixels, (height, width, 3)."""
+    path = str(OUTPUT / name)
+    simple.SaveScreenshot(path, view, ImageResolution=list(view.ViewSize))
+    return read_png(path)
+
+
+def read_png(path):
+    """Pixels of a PNG file, (height, width, 3), row 0 at the bottom."""
+    reader = vtkPNGReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    image = reader.GetOutput()
+    width, height, _ = image.GetDimensions()
+    pixels = vtk_to_numpy(image.GetPointData().GetScalars())
+    return pixels.reshape(height, width, -1)[:, :, :3].astype(int)
+
+
+def covered(pixels):
+    """Fraction of pixels that differ from the background, which the lower left corner shows."""
+    return float((abs(pixels - pixels[0, 0]).max(axis=2) > 8).mean())
+
+
+def check_same(first, second, tolerance=0):
+    """Two images agree to within `tolerance` grey levels in every pixel."""
+    difference = int(abs(first - second).max())
+    assert difference <= tolerance, f"images differ by {difference} grey levels, {tolerance} allowed"
+
+
+def check_close(actual, expected, what):
+    """Two numbers agree to single precision."""
+    assert math.isclose(actual, expected, rel_tol=1e-6, abs_tol=1e-6), f"{what}: {actual} in place of {expected}"
+
+
+def middle(values):
+    """Middle of a range."""
+    return 0.5 * (values[0] + values[1])
+
+
+def finish(**results):
+    """Print the closing line."""
+    print(json.dumps(results, default=lambda value: numpy.asarray(value).tolist()))

@@ -1,0 +1,49 @@
+"""Inputs that cannot be drawn: one error that says why, an empty image, and no crash."""
+
+from common import *
+from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
+
+load_plugin(globals())
+view = make_view()
+messages = vtkStringOutputWindow()
+vtkOutputWindow.SetInstance(messages)
+
+
+def check_refused(source, expected, name):
+    messages.Initialize()
+    display = simple.Show(source, view)
+    display.SetRepresentationType(PROGRESSIVE_ISOSURFACE)
+    simple.ResetCamera(view)
+    assert covered(screenshot(view, name)) == 0.0, name
+    text = messages.GetOutput()
+    assert expected in text, f"{name}: {expected!r} not in {text!r}"
+    simple.Delete(source)
+
+
+empty = simple.PassArrays(Input=make_wavelet())
+empty.PointDataArrays = []
+check_refused(empty, "no compressed volume", "errors_no_array.png")
+
+rectilinear = simple.ProgrammableSource(OutputDataSetType="vtkRectilinearGrid")
+rectilinear.Script = """
+from vtkmodules.util.numpy_support import numpy_to_vtk
+import numpy
+axis = numpy_to_vtk(numpy.arange(4.0), deep=1)
+output.SetDimensions(4, 4, 4)
+output.SetXCoordinates(axis); output.SetYCoordinates(axis); output.SetZCoordinates(axis)
+output.PointData.append(numpy.arange(64.0), "values")
+"""
+check_refused(rectilinear, "image data only", "errors_rectilinear.png")
+
+damaged = simple.ProgrammableFilter(Input=ZFPCompress(Input=make_wavelet()), CopyArrays=1)
+damaged.Script = """
+image = self.GetImageDataOutput()
+image.ShallowCopy(self.GetImageDataInput(0))
+bits = image.GetFieldData().GetArray("ProgIso.ZFP.BlockBits").NewInstance()
+bits.SetName("ProgIso.ZFP.BlockBits")
+bits.InsertNextValue(5)
+image.GetFieldData().AddArray(bits)
+"""
+check_refused(damaged, "Progressive Isosurface: ", "errors_damaged.png")
+
+finish(messages="seen")

@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# gui.sh BUILD OUTPUT [DISPLAY]: starts ParaView's own window on a virtual display with the plugin of BUILD, lets
+# gui_script.py show an isosurface there, and saves OUTPUT/gui_window.png, the whole window as a user sees it.
+# What gui_script.py says is in OUTPUT/gui.log. Wants Debian's python3-pil (ParaView's Python packages bring it along).
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+build=$(realpath "$1")
+mkdir -p "$2"
+output=$(realpath "$2")
+display=${3:-:$((100 + $$ % 400))}
+patience=${PROGISO_GUI_SECONDS:-240}
+
+scratch=$(mktemp -d)
+server= window=
+finish() {
+  [ -z "$window" ] || kill -KILL "$window" 2>/dev/null || true
+  [ -z "$server" ] || kill "$server" 2>/dev/null || true
+  rm -rf "$scratch"
+}
+trap finish EXIT
+
+# A home of its own: no welcome dialog, nothing of the user's settings.
+export HOME=$scratch XDG_CONFIG_HOME=$scratch/.config XDG_RUNTIME_DIR=$scratch/run DISPLAY=$display
+mkdir -p "$XDG_RUNTIME_DIR" "$XDG_CONFIG_HOME/ParaView"
+chmod 700 "$XDG_RUNTIME_DIR"
+version=$(paraview --version 2>&1 | grep -o '[0-9.]*$')
+printf '[General]\nGeneralSettings.ShowWelcomeDialog=false\n' >"$XDG_CONFIG_HOME/ParaView/ParaView$version.ini"
+
+Xvfb "$display" -screen 0 1500x1200x24 >/dev/null 2>&1 &
+server=$!
+for _ in $(seq 50); do
+  [ -e "/tmp/.X11-unix/X${display#:}" ] && break
+  sleep 0.1
+done
+
+rm -f "$output/gui.log" "$output/gui_window.png"
+export PROGISO_GUI_BUILD=$build PROGISO_GUI_OUTPUT=$output
+paraview --script="$here/gui_script.py" >"$output/gui.log" 2>&1 &
+window=$!
+for _ in $(seq "$patience"); do
+  sleep 1
+  grep -q '"refined": true' "$output/gui.log" && break
+  kill -0 "$window" 2>/dev/null || break
+done
+if ! grep -q '"refined": true' "$output/gui.log"; then
+  echo "ParaView's window showed no complete image; see $output/gui.log:" >&2
+  tail -20 "$output/gui.log" >&2
+  exit 1
+fi
+sleep 3 # for the panels to be painted
+/usr/bin/python3 - "$display" "$output/gui_window.png" <<'PYTHON'
+import sys
+from PIL import ImageGrab
+
+ImageGrab.grab(xdisplay=sys.argv[1]).save(sys.argv[2])
+PYTHON
+tail -1 "$output/gui.log"

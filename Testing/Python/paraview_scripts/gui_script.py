@@ -1,0 +1,42 @@
+"""Runs inside ParaView's own window (see gui.sh): shows a compressed volume as progressive isosurface, as a user would, and reports
+how the image refined while the window stayed responsive. Prints "refined" and one JSON object when it has converged."""
+
+import json
+import os
+import pathlib
+
+from paraview import servermanager, simple
+
+BUILD = pathlib.Path(os.environ["PROGISO_GUI_BUILD"])
+(PLUGIN,) = BUILD.glob("lib*/**/plugins/ProgIso/ProgIso.so")
+simple.LoadPlugin(str(PLUGIN), remote=False, ns=globals())
+
+view = simple.GetActiveViewOrCreate("RenderView")
+wavelet = simple.Wavelet(WholeExtent=[-64, 64] * 3)
+compressed = ZFPCompress(Input=wavelet, Rate=8)
+display = simple.Show(compressed, view)
+display.SetRepresentationType("Progressive Isosurface")
+display.Isovalue = 150.0
+display.DiffuseColor = [0.94, 0.86, 0.71]
+simple.SetActiveSource(compressed)
+camera = view.GetActiveCamera()
+camera.Azimuth(30)
+camera.Elevation(20)
+simple.ResetCamera(view)
+
+completed = []
+
+
+def look_at_progress(*_):
+    """After each image of the window: how far is it?"""
+    display.SMProxy.UpdatePropertyInformation()
+    helper = servermanager.vtkSMPropertyHelper(display.SMProxy, "CompletedFraction")
+    completed.append(helper.GetAsDouble())
+    if completed[-1] == 1.0 and completed.count(1.0) == 1:
+        passes = servermanager.vtkSMPropertyHelper(display.SMProxy, "NumberOfPasses").GetAsInt()
+        print(json.dumps({"refined": True, "completed": completed, "passes": passes}), flush=True)
+
+
+# From here on the window's event loop makes the images: an interactive one, then whatever the mapper asks for.
+view.GetRenderWindow().AddObserver("EndEvent", look_at_progress)
+view.SMProxy.InteractiveRender()

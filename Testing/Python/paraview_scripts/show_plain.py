@@ -1,0 +1,56 @@
+"""A plain image as progressive isosurface: default isovalue, colours, statistics, speculation, and no restart without need."""
+
+from common import *
+
+load_plugin(globals())
+view = make_view()
+wavelet = make_wavelet()
+display = show_isosurface(wavelet, view)
+look(view)
+
+# the isovalue starts in the middle of the range
+values = wavelet.PointData["RTData"].GetRange()
+check_close(display.Isovalue, middle(values), "isovalue at first")
+assert list(display.IsosurfaceArray) == ["POINTS", "RTData"], list(display.IsosurfaceArray)
+
+# solid colour
+display.DiffuseColor = [1.0, 0.5, 0.25]
+display.Isovalue = 150.0
+solid = screenshot(view, "plain_solid.png")
+info = check_converged(display)
+assert 0.1 < covered(solid) < 0.9, covered(solid)
+brightest = solid.reshape(-1, 3)[solid.sum(axis=2).argmax()]
+assert brightest[0] > brightest[1] > brightest[2], f"solid colour shows as {brightest}"
+
+# a second image of the same scene costs no new passes and is the same
+again = screenshot(view, "plain_again.png")
+check_same(solid, again)
+assert information(display)["passes"] == info["passes"], information(display)
+
+# without speculation the image is the same
+display.Speculation = 0
+slow = screenshot(view, "plain_no_speculation.png")
+slow_info = check_converged(display)
+check_same(solid, slow)
+assert slow_info["passes"] >= info["passes"], (slow_info, info)
+display.Speculation = 1
+
+# the colour map at the isovalue: blue below the range's middle, red above it
+simple.ColorBy(display, ("POINTS", "RTData"))
+display.RescaleTransferFunctionToDataRange(False, True)
+display.SetScalarBarVisibility(view, False)
+display.Isovalue = 90.0
+low = screenshot(view, "plain_mapped_low.png")
+display.Isovalue = 240.0
+high = screenshot(view, "plain_mapped_high.png")
+foreground = [image.reshape(-1, 3)[image.sum(axis=2).argmax()] for image in (low, high)]
+assert foreground[0][2] > foreground[0][0], f"low isovalue shows as {foreground[0]}"
+assert foreground[1][0] > foreground[1][2], f"high isovalue shows as {foreground[1]}"
+
+# hidden and shown again
+simple.Hide(wavelet, view)
+assert covered(screenshot(view, "plain_hidden.png")) == 0.0
+simple.Show(wavelet, view)
+check_same(high, screenshot(view, "plain_mapped_high.png"))
+
+finish(info=info, no_speculation=slow_info, covered=covered(solid))

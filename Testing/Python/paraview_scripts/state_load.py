@@ -1,0 +1,18 @@
+"""Load the state of state_save.py in a new process and compare."""
+
+from common import *
+
+load_plugin(globals())
+simple.LoadState(str(OUTPUT / "state.pvsm"))
+view = simple.GetActiveViewOrCreate("RenderView")
+loaded = screenshot(view, "state_loaded.png")
+check_same(read_png(OUTPUT / "state_saved.png"), loaded)
+
+compressed = simple.FindSource("ZFPCompress1")
+display = simple.GetDisplayProperties(compressed, view)
+assert display.Representation == PROGRESSIVE_ISOSURFACE, display.Representation
+assert display.Isovalue == 220.0 and display.Speculation == 0, (display.Isovalue, display.Speculation)
+assert compressed.Rate == 6.0, compressed.Rate
+check_converged(display)
+
+finish(covered=covered(loaded))

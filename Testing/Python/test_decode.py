@@ -1,0 +1,91 @@
+"""The decoder of the shaders against libzfp, bit for bit."""
+
+import numpy as np
+import progiso
+import pytest
+from progiso import vtkProgressiveIsosurfaceMapper
+from support import blobs, make_image, marschner_lobb, noise, reference_values
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkFloatArray
+from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
+
+EXTREMES = np.array([0.0, -0.0, 1.0, -1.0, 3.4e38, -3.4e38, 1.2e-38, 1e-45, -1e-45, 1e-40, 255, 65535, 1e10, np.pi], np.float32)
+
+
+@pytest.fixture(scope="module")
+def window():
+    window = vtkRenderWindow()
+    window.SetOffScreenRendering(True)
+    window.SetSize(16, 16)
+    window.AddRenderer(vtkRenderer())
+    window.Render()
+    yield window
+    window.Finalize()
+
+
+def check(window, image):
+    """Decode on the GPU; every bit must be libzfp's."""
+    got = vtkFloatArray()
+    mapper = vtkProgressiveIsosurfaceMapper()
+    mapper.DecodeOnGPU(window, image, got)
+    expected = reference_values(image).ravel()
+    got = vtk_to_numpy(got)
+    assert got.shape == expected.shape
+    wrong = np.flatnonzero(got.view(np.uint32) != expected.view(np.uint32))
+    assert len(wrong) == 0, f"{len(wrong)} of {len(got)} samples, first at {wrong[0]}: {got[wrong[0]]!r}, not {expected[wrong[0]]!r}"
+
+
+def of(values, rate):
+    return progiso.compress(make_image(values), rate)
+
+
+@pytest.mark.parametrize("rate", range(1, 33))
+def test_all_rates(window, rate):
+    check(window, of(noise((9, 13, 10), rate), rate))
+    check(window, of(marschner_lobb(14), rate))
+
+
+@pytest.mark.parametrize("bits", [9, 10, 11, 12, 15, 17, 31, 32, 33, 50, 63, 65, 77, 100, 127, 129, 257, 333, 511, 513, 1001, 1999, 2047])
+def test_any_bits_per_block(window, bits):
+    """Blocks that start and end anywhere within a word."""
+    image = of(noise((9, 10, 11), bits), bits / 64)
+    check(window, image)
+    check(window, of(blobs((9, 10, 11), bits), bits / 64))
+
+
+@pytest.mark.parametrize("x", range(2, 10))
+def test_all_partial_blocks(window, x):
+    for y in (2, 4, 5, 6, 7):
+        for z in (3, 4, 5, 6, 7):
+            check(window, of(noise((z, y, x), x * 100 + y * 10 + z), 7.5))
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_extreme_values(window, seed):
+    """Blocks of zeros, of one exponent and of all; of denormals, and close to overflow."""
+    rng = np.random.default_rng(seed)
+    values = rng.choice(EXTREMES, (16, 16, 16))
+    values[:4] = 0
+    values[4:8, 4:8, 4:8] = rng.choice(EXTREMES)
+    values[8:12] *= rng.uniform(0.5, 1, (4, 16, 16)).astype(np.float32)
+    values[12:] = (rng.normal(size=(4, 16, 16)) * 10.0 ** rng.uniform(-44, 37, (4, 16, 16))).astype(np.float32)
+    for rate in (1, 4, 9.25, 16, 32):
+        check(window, of(values, rate))
+
+
+@pytest.mark.parametrize("rate", [0.5, 4, 31])
+def test_random_streams(window, rate):
+    """Any bits at all decode as libzfp decodes them."""
+    image = of(noise((16, 16, 16)), rate)
+    stream = vtk_to_numpy(image.GetFieldData().GetAbstractArray("ProgIso.ZFP.Stream"))
+    for seed in range(4):
+        # In place: the array is the image's own.
+        stream[:] = np.random.default_rng(seed).integers(0, 256, len(stream), np.uint8)
+        check(window, image)
+
+
+@pytest.mark.parametrize("rate", [1, 2, 4, 8])
+def test_scan(window, rate):
+    from progiso.data import fetch
+
+    check(window, progiso.compress(progiso.read(fetch("ct-cranium")), rate))
