@@ -17,6 +17,26 @@ _OBJECT = re.compile(r"^\w+ \((?:0x)?[0-9a-fA-F]+\)[^:]*: ")
 
 
 @contextmanager
+def captured_output():
+    """Keep what VTK prints inside the block from standard error.
+
+    Yields
+    ------
+    vtkmodules.vtkCommonCore.vtkStringOutputWindow
+        Its ``GetOutput()`` is the text.
+    """
+    window, verbosity = vtkOutputWindow.GetInstance(), vtkLogger.GetCurrentVerbosityCutoff()
+    capture = vtkStringOutputWindow()
+    vtkOutputWindow.SetInstance(capture)
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    try:
+        yield capture
+    finally:
+        vtkLogger.SetStderrVerbosity(verbosity)
+        vtkOutputWindow.SetInstance(window)
+
+
+@contextmanager
 def vtk_errors(what):
     """Turn what VTK prints as an error inside the block into one exception.
 
@@ -37,23 +57,15 @@ def vtk_errors(what):
 
     Examples
     --------
-    >>> from progiso._vtk import vtk_errors
     >>> from vtkmodules.vtkIOXML import vtkXMLImageDataReader
-    >>> with vtk_errors("cannot read 'none.vti'"):
+    >>> with vtk_errors("cannot read"):
     ...     vtkXMLImageDataReader().Update()
     Traceback (most recent call last):
         ...
-    RuntimeError: cannot read 'none.vti': No file name specified
+    RuntimeError: cannot read: No file name specified
     """
-    window, verbosity = vtkOutputWindow.GetInstance(), vtkLogger.GetCurrentVerbosityCutoff()
-    capture = vtkStringOutputWindow()
-    vtkOutputWindow.SetInstance(capture)
-    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
-    try:
+    with captured_output() as capture:
         yield
-    finally:
-        vtkLogger.SetStderrVerbosity(verbosity)
-        vtkOutputWindow.SetInstance(window)
     errors, warned = _messages(capture.GetOutput())
     for message in warned:
         warnings.warn(f"{what}: {message}", stacklevel=3)
@@ -63,16 +75,15 @@ def vtk_errors(what):
 
 def _messages(text):
     """Split VTK's output into one-line errors and warnings, without object addresses."""
-    errors, warned = [], []
+    errors, failures, warned = [], [], []
     for kind, body in _MESSAGE.findall(text):
         message = " ".join(_OBJECT.sub("", body).split())
         # The executive repeats that its algorithm failed, and says nothing of why.
         if "returned failure for request" in message:
-            message = message.split(" returned failure")[0] + " failed"
-            errors.append(message) if not errors else None
+            failures.append(message.split(" returned failure")[0] + " failed")
         else:
             (errors if kind == "ERROR" else warned).append(message)
-    return errors, warned
+    return errors or failures, warned
 
 
 def image_data(image):

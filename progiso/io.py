@@ -13,7 +13,7 @@ from vtkmodules.vtkIOXML import (
 )
 
 from ._files import atomic_path
-from ._vtk import image_data, observe_progress, vtk_errors
+from ._vtk import captured_output, image_data, observe_progress, vtk_errors
 from .compression import is_compressed
 from .metaimage import read_metaimage, write_metaimage
 from .nifti import read_nibabel, read_nifti, write_nifti
@@ -108,13 +108,14 @@ def _read_zfp(path, dimensions, rate):
 
 
 def _read_other(path):
-    """Ask VTK's image readers, then nibabel."""
-    reader = vtkImageReader2Factory.CreateImageReader2(str(path))
-    if reader is not None:
-        return _read_with(reader, path)
+    """Ask nibabel, then VTK's readers of picture formats."""
     try:
         return read_nibabel(path)
-    except ImportError as error:
+    except (ImportError, ValueError) as error:
+        with captured_output():  # readers that find nothing of theirs say so
+            reader = vtkImageReader2Factory.CreateImageReader2(str(path))
+        if reader is not None:
+            return _read_with(reader, path)
         known = ", ".join((*_VTK_READERS, *_READERS, ".zfp"))
         raise ValueError(f"do not know how to read '{path}' (known: {known}); {error}") from None
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkIOImage import vtkNIFTIImageReader, vtkNIFTIImageWriter
 
@@ -45,12 +45,10 @@ def _rescaled(image, slope, intercept):
     if not np.isfinite(slope) or slope == 0 or (slope == 1 and intercept == 0):
         return image
     scalars = image.GetPointData().GetScalars()
-    values = (vtk_to_numpy(scalars) * slope + intercept).astype(np.float32)
-    scaled = image_from_array(
-        values, image.GetDimensions(), scalars.GetName(), scalars.GetNumberOfComponents()
-    )
-    scaled.CopyStructure(image)
-    return scaled
+    scaled = numpy_to_vtk((vtk_to_numpy(scalars) * slope + intercept).astype(np.float32))
+    scaled.SetName(scalars.GetName())
+    image.GetPointData().SetScalars(scaled)
+    return image
 
 
 def write_nifti(image, path):

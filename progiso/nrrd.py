@@ -8,6 +8,7 @@ from __future__ import annotations
 import bz2
 import gzip
 import re
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +28,13 @@ _TYPES = {
     "float64": "double",
 }
 _DTYPES = {name: dtype for dtype, names in _TYPES.items() for name in names.split("|")}
+_DECODERS = {
+    "raw": bytes,
+    "gzip": gzip.decompress,
+    "gz": gzip.decompress,
+    "bzip2": bz2.decompress,
+    "bz2": bz2.decompress,
+}
 
 
 def read_nrrd(path):
@@ -107,11 +115,13 @@ def _decode(raw, fields, dtype, count, path):
         raw = raw[raw.index(b"\n") + 1 :]
     if encoding in ("txt", "text", "ascii"):
         return np.array(raw.split(), dtype.newbyteorder("="))
-    decoders = {"raw": bytes, "gzip": gzip.decompress, "gz": gzip.decompress,
-                "bzip2": bz2.decompress, "bz2": bz2.decompress}  # fmt: skip
-    if encoding not in decoders:
+    if encoding not in _DECODERS:
         raise ValueError(f"'{path}' has the unsupported NRRD encoding '{encoding}'")
-    raw, skip = decoders[encoding](raw), int(fields.get("byte skip", 0))
+    try:
+        raw = _DECODERS[encoding](raw)
+    except (OSError, EOFError, ValueError, zlib.error) as error:
+        raise ValueError(f"'{path}' is damaged: {error}") from None
+    skip = int(fields.get("byte skip", 0))
     raw = raw[-count * dtype.itemsize :] if skip == -1 else raw[skip:]
     if len(raw) < count * dtype.itemsize:
         raise ValueError(f"'{path}' is truncated: {len(raw)} of {count * dtype.itemsize} bytes")

@@ -106,11 +106,13 @@ def write_raw(image, path):
     Raises
     ------
     ValueError
-        When the name's dimensions or type differ from the image's, or geometry would be lost.
+        When the name's dimensions or type differ from the image's.
     """
     _, dimensions, dtype = parse_raw_name(path)
     values = vtk_to_numpy(image.GetPointData().GetScalars())
-    if values.ndim != 1 or values.dtype != dtype.newbyteorder("=") or dimensions != image.GetDimensions():
+    same = values.dtype == dtype.newbyteorder("=") and dimensions == image.GetDimensions()
+    if values.ndim != 1 or not same:
         correct = raw_name("name", image.GetDimensions(), values.dtype)
-        raise ValueError(f"'{path}' does not describe the image: call it {correct} (one component)")
+        name = Path(path).name
+        raise ValueError(f"'{name}' does not describe the image: call it {correct} (one component)")
     values.astype(dtype, copy=False).tofile(path)
