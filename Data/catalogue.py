@@ -89,7 +89,9 @@ def fetch_scan(scan, folder):
         _check(member, scan)
         image = scan.convert(member)
     if image.GetDimensions() != scan.dimensions:
-        raise RuntimeError(f"{scan.name} has {image.GetDimensions()} samples, not {scan.dimensions}")
+        raise RuntimeError(
+            f"{scan.name} has {image.GetDimensions()} samples, not {scan.dimensions}"
+        )
     save(image, path)
     return path
 
@@ -158,7 +160,7 @@ SCANS = {
         ),
         Scan(
             name="mri-brain",
-            description="T1 MRI of a human brain (Colin 27 average, skull stripped); face towards +y",
+            description="T1 MRI of a human brain (Colin 27, skull stripped); face towards +y",
             dimensions=(301, 370, 316),
             spacing=(0.5, 0.5, 0.5),
             dtype="uint8",

@@ -191,9 +191,7 @@ def _value_noise(axes, octaves, seed):
     along_x = np.vstack([w[0].T for w in weights])
 
     def slice_at(i):
-        rows = [
-            w[1] @ np.tensordot(w[2][i], lattice, 1) for w, lattice in zip(weights, lattices)
-        ]
+        rows = [w[1] @ np.tensordot(w[2][i], lattice, 1) for w, lattice in zip(weights, lattices)]
         return np.hstack(rows) @ along_x
 
     return slice_at

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 from pkgutil import extend_path
 
-# In a checkout's root, `python -m progiso` finds these sources before the installed package: let them
-# share its compiled modules. Elsewhere this adds nothing.
+# In a checkout's root, `python -m progiso` finds these sources before the installed package: let
+# them share its compiled modules. Elsewhere this adds nothing.
 __path__ = extend_path(__path__, __name__)
 
 from ._after_import import after_import  # noqa: E402
@@ -23,7 +23,9 @@ from ._built import VTK_VERSION as _VTK_VERSION  # noqa: E402
 try:
     from vtkmodules.vtkCommonCore import vtkVersion
 except ImportError as error:
-    raise ImportError(f"progiso needs VTK {_VTK_VERSION}: pip install vtk=={_VTK_VERSION}") from error
+    raise ImportError(
+        f"progiso needs VTK {_VTK_VERSION}: pip install vtk=={_VTK_VERSION}"
+    ) from error
 
 # Class layouts change between minor releases; without this check the process would crash.
 _FOUND = vtkVersion.GetVTKVersion()

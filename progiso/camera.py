@@ -149,7 +149,9 @@ def view_camera(target, direction=(0.45, -1.0, 0.3), view_up=(0.0, 0.0, 1.0), pa
     centre, sides = _centre_and_sides(target)
     length = math.hypot(*direction)
     if not length > 0 or not _sine(direction, view_up) > 1e-6:
-        raise ValueError(f"the view direction {direction} and up {view_up} must not be parallel or zero")
+        raise ValueError(
+            f"the view direction {direction} and up {view_up} must not be parallel or zero"
+        )
     radius = 0.5 * math.hypot(*sides)
     distance = radius / math.sin(math.radians(15))
     position = tuple(c + distance * d / length for c, d in zip(centre, direction))

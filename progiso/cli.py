@@ -127,7 +127,9 @@ def _add_render(commands):
     )
     _add_array(command)
     _add_camera(command)
-    command.add_argument("--color", default="oldlace", help="name or #rrggbb (default: %(default)s)")
+    command.add_argument(
+        "--color", default="oldlace", help="name or #rrggbb (default: %(default)s)"
+    )
     command.add_argument("--background", default="#20242b", help="name or #rrggbb")
     command.add_argument("--output", type=Path, metavar="PNG", help="write the image")
     command.add_argument(

@@ -73,7 +73,9 @@ def set_axes(image, axes, origin):
     axes, origin = np.asarray(axes, float), np.asarray(origin, float)
     spacing = np.linalg.norm(axes, axis=0)
     if not (np.isfinite(axes).all() and np.isfinite(origin).all() and (spacing > 0).all()):
-        raise ValueError(f"the image's axes {axes.tolist()} or origin {origin.tolist()} are unusable")
+        raise ValueError(
+            f"the image's axes {axes.tolist()} or origin {origin.tolist()} are unusable"
+        )
     direction = axes / spacing
     if abs(np.linalg.det(direction)) < 1e-6:
         raise ValueError(f"the image's axes {axes.tolist()} do not span space")

@@ -178,7 +178,9 @@ def save(image, path, progress=None):
         raise ValueError(f"do not know how to write '{path}': use one of {', '.join(_WRITERS)}")
     compressed = is_compressed(image_data(image))
     if suffix == ".zfp" and not compressed:
-        raise ValueError(f"'{path}': a .zfp file holds a compressed volume, compress the image first")
+        raise ValueError(
+            f"'{path}': a .zfp file holds a compressed volume, compress the image first"
+        )
     if suffix not in (".vti", ".zfp"):
         _check_plain(image, path, compressed)
     with atomic_path(path) as temporary:
@@ -191,9 +193,13 @@ def save(image, path, progress=None):
 def _check_plain(image, path, compressed):
     """Formats for plain scalars need them at the points."""
     if compressed:
-        raise ValueError(f"'{path}': only .vti and .zfp hold a compressed volume, decompress it first")
+        raise ValueError(
+            f"'{path}': only .vti and .zfp hold a compressed volume, decompress it first"
+        )
     if image.GetPointData().GetScalars() is None:
-        raise ValueError(f"'{path}': the image has no active point scalars; .vti holds other arrays")
+        raise ValueError(
+            f"'{path}': the image has no active point scalars; .vti holds other arrays"
+        )
 
 
 def _write_vti(image, path, progress=None):

@@ -120,9 +120,7 @@ def add_isosurface(
     )
     if user_matrix is not None:
         prop.SetUserMatrix(pyvista.vtkmatrix_from_array(_matrix(user_matrix)))
-    plotter.add_actor(
-        prop, reset_camera=reset_camera, name=name, pickable=pickable, render=render
-    )
+    plotter.add_actor(prop, reset_camera=reset_camera, name=name, pickable=pickable, render=render)
     return prop
 
 

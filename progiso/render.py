@@ -118,7 +118,9 @@ def render(
         window.Render()
     _check_opengl(window)
     mapper = volume.GetMapper()
-    result = RenderResult(_pixels(window, width, height), depth(mapper), statistics(mapper, renderer))
+    result = RenderResult(
+        _pixels(window, width, height), depth(mapper), statistics(mapper, renderer)
+    )
     window.Finalize()
     return result
 
