@@ -270,16 +270,22 @@ std::string vtkCompressedVolume::CheckGeometry(vtkImageData* image) const
     return error;
   }
   const int* extent = image->GetExtent();
+  const bool cells = this->Association == CellData;
   std::ostringstream message;
   for (int axis = 0; axis < 3; ++axis)
   {
     const vtkTypeInt64 expected = static_cast<vtkTypeInt64>(extent[2 * axis + 1]) -
-      extent[2 * axis] + (this->Association == CellData ? 0 : 1);
-    if (dims[axis] != expected || dims[axis] < 2 || dims[axis] > std::numeric_limits<int>::max())
+      extent[2 * axis] + (cells ? 0 : 1);
+    if (dims[axis] != expected)
     {
       message << DimensionsName << " is " << dims[axis] << " along axis " << axis
-              << " where the image has " << expected
-              << (this->Association == CellData ? " cells" : " points") << " (at least 2 are needed)";
+              << ", but the image has " << expected << (cells ? " cells" : " points") << " there";
+      break;
+    }
+    if (expected < 2 || expected > std::numeric_limits<int>::max())
+    {
+      message << "it has " << expected << (cells ? " cells" : " points") << " along axis " << axis
+              << ", at least 2 and at most 2^31-1 are needed";
       break;
     }
   }

@@ -58,8 +58,11 @@ const char* ModeName(zfp_mode mode)
 
 //------------------------------------------------------------------------------
 // What zfp's header says, if it is something that a compressed volume can hold.
-std::string ReadHeader(vtkTypeUInt64* words, int dims[3], int& blockBits, int& headerBits)
+std::string ReadHeader(
+  std::istream& file, vtkTypeInt64 fileBytes, int dims[3], int& blockBits, int& headerBits)
 {
+  vtkTypeUInt64 words[HeaderWords] = {}; // zero where the file is shorter
+  file.read(reinterpret_cast<char*>(words), sizeof(words));
   bitstream* bits = stream_open(words, HeaderWords * sizeof(vtkTypeUInt64));
   zfp_stream* zfp = zfp_stream_open(bits);
   zfp_field* field = zfp_field_alloc();
@@ -72,7 +75,7 @@ std::string ReadHeader(vtkTypeUInt64* words, int dims[3], int& blockBits, int& h
   stream_close(bits);
 
   std::ostringstream message;
-  if (headerBits == 0)
+  if (headerBits == 0 || headerBits > 8 * fileBytes)
   {
     message << "does not start with zfp's header (codec " << zfp_codec_version
             << "); for a file without header give DataDimensions and Rate";
@@ -145,11 +148,9 @@ std::string vtkZFPReader::FindLayout(
   const bool hasHeader = std::all_of(dims, dims + 3, [](int n) { return n == 0; });
   if (hasHeader)
   {
-    vtkTypeUInt64 words[HeaderWords] = {};
     file.seekg(0);
-    file.read(reinterpret_cast<char*>(words), sizeof(words));
-    const std::string error =
-      ReadHeader(words, layout.Dimensions, layout.BlockBits, layout.HeaderBits);
+    const std::string error = ReadHeader(
+      file, layout.FileBytes, layout.Dimensions, layout.BlockBits, layout.HeaderBits);
     if (!error.empty())
     {
       return error;
@@ -187,7 +188,7 @@ std::string vtkZFPReader::CheckLayout(const Layout& layout)
     message << "has " << layout.FileBytes << " bytes where " << dims[0] << " x " << dims[1] << " x "
             << dims[2] << " samples at " << layout.BlockBits / 64.0 << " bits need ";
     streamBytes < 0 ? message << "more than 2^60" : message << needed;
-    message << (layout.HeaderBits ? ": it is truncated" : ": wrong DataDimensions or Rate?");
+    message << (layout.HeaderBits ? ": it is truncated" : ": check DataDimensions and Rate");
     return message.str();
   }
   return {};

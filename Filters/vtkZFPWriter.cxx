@@ -13,8 +13,8 @@
 #include <zfp.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <vector>
 
@@ -40,6 +40,17 @@ size_t MakeHeader(vtkCompressedVolume* volume, vtkTypeUInt64 words[3])
   zfp_stream_close(zfp);
   stream_close(stream);
   return length;
+}
+
+//------------------------------------------------------------------------------
+// Half a file is of no use; but a device or pipe is not ours to remove.
+void RemoveFile(const char* name)
+{
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(name, ignored))
+  {
+    std::filesystem::remove(name, ignored);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -162,9 +173,9 @@ void vtkZFPWriter::WriteFile(vtkCompressedVolume* volume)
   file.close();
   if (!file)
   {
-    vtkErrorMacro("Could not write " << this->FileName << " (disk full?): removed it.");
+    vtkErrorMacro("Could not write all of " << this->FileName << " (disk full?).");
     this->SetErrorCode(vtkErrorCode::OutOfDiskSpaceError);
-    std::remove(this->FileName);
+    RemoveFile(this->FileName);
   }
 }
 
