@@ -1,0 +1,118 @@
+// Intersection of a ray with the trilinear isosurface inside one cell. Along the ray the trilinear
+// interpolant is a cubic; as in Marmitt et al. (2004) its roots are isolated first and refined then, but
+// on its Bernstein coefficients, which are values of the interpolant at the corners of the box spanned
+// by the ray's way through the cell (the cubic's polar form). They are convex combinations of the
+// corners' values: signs are decided without cancellation, and alike on both sides of a shared face.
+// Inside is where value - isovalue >= 0; the surface is where inside and outside meet.
+
+float Lerp(float a, float b, float s)
+{
+  precise float value = a * (1.0 - s) + b * s; // exactly a at s = 0 and b at s = 1
+  return value;
+}
+
+// Bernstein coefficients along the segment u0 - u1 of the cell's unit cube; w: corner values.
+vec4 CubicAlong(float w[8], vec3 u0, vec3 u1)
+{
+  float x0[4], x1[4];
+  for (int i = 0; i < 4; ++i)
+  {
+    x0[i] = Lerp(w[2 * i], w[2 * i + 1], u0.x);
+    x1[i] = Lerp(w[2 * i], w[2 * i + 1], u1.x);
+  }
+  // value at (x of end a, y of end b) on the lower and upper z face
+  vec2 f00 = vec2(Lerp(x0[0], x0[1], u0.y), Lerp(x0[2], x0[3], u0.y));
+  vec2 f10 = vec2(Lerp(x1[0], x1[1], u0.y), Lerp(x1[2], x1[3], u0.y));
+  vec2 f01 = vec2(Lerp(x0[0], x0[1], u1.y), Lerp(x0[2], x0[3], u1.y));
+  vec2 f11 = vec2(Lerp(x1[0], x1[1], u1.y), Lerp(x1[2], x1[3], u1.y));
+  float b1 = Lerp(f10.x, f10.y, u0.z) + Lerp(f01.x, f01.y, u0.z) + Lerp(f00.x, f00.y, u1.z);
+  float b2 = Lerp(f11.x, f11.y, u0.z) + Lerp(f10.x, f10.y, u1.z) + Lerp(f01.x, f01.y, u1.z);
+  return vec4(Lerp(f00.x, f00.y, u0.z), b1 / 3.0, b2 / 3.0, Lerp(f11.x, f11.y, u1.z));
+}
+
+// The cubic's value at s, by de Casteljau's scheme.
+float CubicValue(vec4 b, float s)
+{
+  vec3 q = vec3(Lerp(b.x, b.y, s), Lerp(b.y, b.z, s), Lerp(b.z, b.w, s));
+  vec2 l = vec2(Lerp(q.x, q.y, s), Lerp(q.y, q.z, s));
+  return Lerp(l.x, l.y, s);
+}
+
+// A third of the cubic's derivative at s.
+float CubicSlope(vec4 b, float s)
+{
+  vec3 d = b.yzw - b.xyz;
+  return Lerp(Lerp(d.x, d.y, s), Lerp(d.y, d.z, s), s);
+}
+
+bool Inside(float value)
+{
+  return value >= 0.0;
+}
+
+// Isolation: the parameters at which the cubic turns, in order; 1 where there is none.
+vec2 Extrema(vec4 b)
+{
+  vec3 d = b.yzw - b.xyz; // the derivative's Bernstein coefficients
+  float a = d.x - 2.0 * d.y + d.z;
+  float h = d.y - d.x;
+  float discriminant = h * h - a * d.x;
+  if (!(discriminant > 0.0))
+  {
+    return vec2(1.0);
+  }
+  float q = -(h + (h < 0.0 ? -1.0 : 1.0) * sqrt(discriminant));
+  float r0 = a != 0.0 ? q / a : 2.0;
+  float r1 = q != 0.0 ? d.x / q : 2.0;
+  r0 = r0 > 0.0 && r0 < 1.0 ? r0 : 1.0; // false also for NaN
+  r1 = r1 > 0.0 && r1 < 1.0 ? r1 : 1.0;
+  return vec2(min(r0, r1), max(r0, r1));
+}
+
+// Iteration: Newton's method, kept within the bracket [low, high] by bisection. The sign changes there.
+float RefineRoot(vec4 b, float low, float high, bool lowInside)
+{
+  float s = 0.5 * (low + high);
+  for (int i = 0; i < 32; ++i)
+  {
+    float value = CubicValue(b, s);
+    if (Inside(value) == lowInside)
+    {
+      low = s;
+    }
+    else
+    {
+      high = s;
+    }
+    float next = s - value / (3.0 * CubicSlope(b, s));
+    next = next > low && next < high ? next : 0.5 * (low + high);
+    if (abs(next - s) < 5e-8 || high - low < 5e-8)
+    {
+      return next;
+    }
+    s = next;
+  }
+  return s;
+}
+
+// The first s in [0, 1] at which inside and outside meet; negative if there is none.
+float FirstTransition(vec4 b)
+{
+  bvec4 inside = greaterThanEqual(b, vec4(0.0));
+  if (all(inside) || !any(inside))
+  {
+    return -1.0; // the cubic stays within the hull of its coefficients
+  }
+  vec2 turn = Extrema(b);
+  float ends[4] = float[4](0.0, turn.x, turn.y, 1.0);
+  bool first = inside.x;
+  for (int i = 1; i < 4; ++i)
+  {
+    bool last = ends[i] < 1.0 ? Inside(CubicValue(b, ends[i])) : inside.w;
+    if (last != first)
+    {
+      return RefineRoot(b, ends[i - 1], ends[i], first);
+    }
+  }
+  return -1.0;
+}

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+// Every stage of the pipeline: a GLSL file of this folder and the buffers it is given.
+#ifndef PipelineStages_h
+#define PipelineStages_h
+
+#include "PipelineBuffers.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+enum class Stage
+{
+  BlockRanges,
+  InitialRays,
+  BeginPass,
+  CacheAges,
+  CacheEvict,
+  CacheRebuild,
+  TraverseGrid,
+  MarkBlocks,
+  AdmitBlocks,
+  DecodeBlocks,
+  GroupRays,
+  IntersectBlocks,
+  NearestHit,
+  BeginShading,
+  MarkShading,
+  ShadeHits,
+  Composite,
+  NumberOfStages
+};
+constexpr int NumberOfStages = static_cast<int>(Stage::NumberOfStages);
+
+struct StageInfo
+{
+  Stage Id;
+  const char* Name;            ///< also the name of its GLSL file
+  std::vector<Buffer> Buffers; ///< at bindings 0, 1, …; at most 8, OpenGL 4.3's guarantee
+};
+
+/// The table itself, in the order of the enumeration.
+const std::vector<StageInfo>& PipelineStages();
+
+/// Text of every GLSL file, by name (generated).
+const std::map<std::string, const char*>& ShaderSources();
+
+/// Complete source of a file for a stage: version, buffer bindings, and the file with its includes.
+std::string AssembleShader(const std::string& file, const StageInfo& stage);
+
+#endif

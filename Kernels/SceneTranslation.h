@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+// From VTK's scene to the pipeline's SceneBlock, and back from hit keys to depths. All in double
+// precision: a volume may lie at 1e6 with a spacing of 1e-3.
+#ifndef SceneTranslation_h
+#define SceneTranslation_h
+
+#include "SceneBlock.h"
+
+#include <cstdint>
+
+class vtkCompressedVolume;
+class vtkImageData;
+class vtkRenderer;
+class vtkVolume;
+
+/// Rays, image, isovalue, lights and material of a volume seen by a renderer's camera. Samples, Blocks,
+/// CoarseCells, Payload and Cache are the pipeline's own business.
+SceneBlock TranslateScene(vtkRenderer* renderer, vtkVolume* volume, vtkImageData* image, const vtkCompressedVolume* compressed);
+
+/// Do two scenes have the same hits? Cameras are compared with a relative tolerance of 1e-7:
+/// vtkWindowToImageFilter perturbs the view angle by rounding.
+bool SameHits(const SceneBlock& a, const SceneBlock& b);
+
+/// Do two scenes that have the same hits look the same?
+bool SameLook(const SceneBlock& a, const SceneBlock& b);
+
+/// Copy what hits depend on.
+void KeepHits(const SceneBlock& from, SceneBlock& to);
+
+/// Distance in world units from the camera (in parallel projection: from its plane) to the hit that a key
+/// of Rays.glsl stands for; infinity for no hit. `x`, `y`: pixel, from the viewport's bottom left.
+float HitDistance(const SceneBlock& scene, int x, int y, std::uint32_t key);
+
+#endif

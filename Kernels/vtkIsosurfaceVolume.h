@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkIsosurfaceVolume
+ * @brief   a vtkVolume that is drawn with the opaque geometry
+ *
+ * An opaque isosurface belongs in the renderer's opaque pass: drawn with the volumes, after the
+ * translucent geometry, it would overwrite what is translucent in front of it. This prop draws its
+ * mapper in the opaque pass and is otherwise a vtkVolume.
+ *
+ * @sa vtkProgressiveIsosurfaceMapper
+ */
+#ifndef vtkIsosurfaceVolume_h
+#define vtkIsosurfaceVolume_h
+
+#include "vtkProgIsoKernelsModule.h" // for export macro
+#include "vtkVolume.h"
+
+class VTKPROGISOKERNELS_EXPORT vtkIsosurfaceVolume : public vtkVolume
+{
+public:
+  static vtkIsosurfaceVolume* New();
+  vtkTypeMacro(vtkIsosurfaceVolume, vtkVolume);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * The opaque pass draws the mapper, the volumetric pass nothing. Return whether anything was drawn.
+   */
+  int RenderOpaqueGeometry(vtkViewport* viewport) override;
+  int RenderVolumetricGeometry(vtkViewport* viewport) override;
+  ///@}
+
+protected:
+  vtkIsosurfaceVolume() = default;
+  ~vtkIsosurfaceVolume() override = default;
+
+private:
+  vtkIsosurfaceVolume(const vtkIsosurfaceVolume&) = delete;
+  void operator=(const vtkIsosurfaceVolume&) = delete;
+};
+
+#endif

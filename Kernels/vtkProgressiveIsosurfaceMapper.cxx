@@ -1,0 +1,560 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkProgressiveIsosurfaceMapper.h"
+
+#include "ProgressivePipeline.h"
+#include "SceneTranslation.h"
+#include "vtkProgressiveIsosurfaceStatistics.h"
+
+#include "vtkCellData.h"
+#include "vtkCommand.h"
+#include "vtkCompressedVolume.h"
+#include "vtkContourValues.h"
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkImageZFPCompress.h"
+#include "vtkInformation.h"
+#include "vtkObjectFactory.h"
+#include "vtkOpenGLRenderWindow.h"
+#include "vtkOpenGLShaderCache.h"
+#include "vtkOpenGLState.h"
+#include "vtkPointData.h"
+#include "vtkRenderWindowInteractor.h"
+#include "vtkRenderer.h"
+#include "vtkTable.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkVolume.h"
+#include "vtkVolumeProperty.h"
+#include "vtkWeakPointer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+//------------------------------------------------------------------------------
+// What the mapper holds behind its interface
+//------------------------------------------------------------------------------
+class vtkProgressiveIsosurfaceMapper::Internals
+{
+public:
+  explicit Internals(vtkProgressiveIsosurfaceMapper* owner)
+    : Owner(owner)
+  {
+  }
+  ~Internals();
+
+  bool UpdateVolume();
+  bool BindWindow(vtkOpenGLRenderWindow* window);
+  bool UploadVolume();
+  bool UpdateScene(vtkRenderer* renderer, vtkVolume* volume);
+  void Refine(vtkOpenGLRenderWindow* window);
+  void Composite(vtkOpenGLRenderWindow* window);
+  void RequestRender(vtkOpenGLRenderWindow* window);
+  void FillStatistics();
+  void ReleaseGraphics();
+  void ReleaseInput();
+  bool Report(const std::string& problem);
+
+  vtkProgressiveIsosurfaceMapper* Owner;
+  ProgressivePipeline Pipeline;
+  vtkWeakPointer<vtkOpenGLRenderWindow> Window;
+
+  vtkSmartPointer<vtkImageData> Compressed; // the input, or what it was compressed to
+  vtkNew<vtkCompressedVolume> Volume;
+  vtkWeakPointer<vtkImageData> Source; // what Compressed was made from, when, and how
+  vtkMTimeType SourceTime = 0;
+  double SourceRate = 0.0;
+  vtkTimeStamp VolumeTime; // of Compressed; the GPU has the one of UploadTime
+  vtkTimeStamp UploadTime;
+
+  SceneBlock Scene;
+  bool HaveScene = false;
+  bool ShadeAgain = false;
+  double TotalMilliseconds = 0.0;
+
+  vtkWeakPointer<vtkRenderWindowInteractor> Interactor;
+  unsigned long TimerObserver = 0;
+  int TimerId = -1;
+
+private:
+  vtkDataArray* FindArray(vtkImageData* image, bool& cellData);
+  vtkSmartPointer<vtkImageData> Compress(vtkImageData* image, vtkDataArray* array, bool cellData);
+  bool MayRefineLater(vtkOpenGLRenderWindow* window) const;
+  void OnTimer(vtkObject*, unsigned long, void* data);
+};
+
+vtkProgressiveIsosurfaceMapper::Internals::~Internals()
+{
+  this->ReleaseGraphics();
+  if (this->Interactor)
+  {
+    this->Interactor->RemoveObserver(this->TimerObserver);
+  }
+}
+
+bool vtkProgressiveIsosurfaceMapper::Internals::Report(const std::string& problem)
+{
+  vtkErrorWithObjectMacro(this->Owner, << problem);
+  return false;
+}
+
+//------------------------------------------------------------------------------
+// The input
+//------------------------------------------------------------------------------
+vtkDataArray* vtkProgressiveIsosurfaceMapper::Internals::FindArray(vtkImageData* image, bool& cellData)
+{
+  int cellFlag = 0;
+  vtkDataArray* array = vtkAbstractMapper::GetScalars(image, this->Owner->ScalarMode, this->Owner->ArrayAccessMode,
+    this->Owner->ArrayId, this->Owner->ArrayName, cellFlag);
+  cellData = cellFlag == 1;
+  if (!array && this->Owner->ScalarMode == VTK_SCALAR_MODE_DEFAULT && image->GetPointData()->GetNumberOfArrays() > 0)
+  {
+    array = image->GetPointData()->GetArray(0); // no active scalars: the first array, as the filters do
+  }
+  return array;
+}
+
+vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceMapper::Internals::Compress(
+  vtkImageData* image, vtkDataArray* array, bool cellData)
+{
+  vtkNew<vtkImageData> single;
+  single->CopyStructure(image);
+  if (cellData)
+  {
+    single->GetCellData()->SetScalars(array);
+  }
+  else
+  {
+    single->GetPointData()->SetScalars(array);
+  }
+  vtkNew<vtkImageZFPCompress> compress;
+  compress->SetInputData(single);
+  compress->SetInputArrayToProcess(
+    0, 0, 0, cellData ? vtkDataObject::FIELD_ASSOCIATION_CELLS : vtkDataObject::FIELD_ASSOCIATION_POINTS,
+    vtkDataSetAttributes::SCALARS);
+  compress->SetRate(this->Owner->Rate);
+  compress->SetComponent(this->Owner->Component);
+  compress->Update();
+  return compress->GetOutput();
+}
+
+void vtkProgressiveIsosurfaceMapper::Internals::ReleaseInput()
+{
+  this->Compressed = nullptr;
+  this->Source = nullptr;
+}
+
+// Makes sure that Compressed and Volume are those of the present input; compresses a plain one.
+bool vtkProgressiveIsosurfaceMapper::Internals::UpdateVolume()
+{
+  vtkProgressiveIsosurfaceMapper* self = this->Owner;
+  if (!self->GetInputAlgorithm())
+  {
+    return this->Report("has no input: connect a vtkImageData, plain or compressed");
+  }
+  self->GetInputAlgorithm()->Update();
+  vtkImageData* image = vtkImageData::SafeDownCast(self->GetInput());
+  if (!image)
+  {
+    return this->Report("needs a vtkImageData as input");
+  }
+  const bool compressed = vtkCompressedVolume::IsCompressed(image);
+  bool cellData = false;
+  vtkDataArray* array = compressed ? nullptr : this->FindArray(image, cellData);
+  if (!compressed && !array)
+  {
+    return this->Report("the input image has no scalars: select an array that it has");
+  }
+  vtkMTimeType time = image->GetMTime();
+  time = std::max(time, array ? std::max(array->GetMTime(), self->GetMTime()) : 0);
+  if (this->Compressed && this->Source == image && this->SourceTime == time)
+  {
+    return true;
+  }
+  this->ReleaseInput();
+  vtkSmartPointer<vtkImageData> volume = compressed ? image : this->Compress(image, array, cellData);
+  if (!this->Volume->Read(volume))
+  {
+    return compressed ? this->Report(this->Volume->GetErrorMessage()) : false; // the filter has told why
+  }
+  this->Compressed = volume;
+  this->Source = image;
+  this->SourceTime = time;
+  this->VolumeTime.Modified();
+  return true;
+}
+
+//------------------------------------------------------------------------------
+// The GPU's objects
+//------------------------------------------------------------------------------
+bool vtkProgressiveIsosurfaceMapper::Internals::BindWindow(vtkOpenGLRenderWindow* window)
+{
+  if (this->Window && this->Window != window)
+  {
+    this->ReleaseGraphics();
+    window->MakeCurrent();
+  }
+  this->Window = window;
+  window->GetShaderCache()->ReleaseCurrentShader();
+  return this->Pipeline.Initialize() || this->Report(this->Pipeline.GetError());
+}
+
+void vtkProgressiveIsosurfaceMapper::Internals::ReleaseGraphics()
+{
+  if (this->Window)
+  {
+    this->Window->MakeCurrent();
+    this->Pipeline.Release();
+  }
+  this->Window = nullptr;
+  this->UploadTime = vtkTimeStamp();
+  this->HaveScene = false;
+}
+
+bool vtkProgressiveIsosurfaceMapper::Internals::UploadVolume()
+{
+  if (this->UploadTime > this->VolumeTime)
+  {
+    return true;
+  }
+  PipelineVolume volume;
+  vtkUnsignedCharArray* stream = this->Volume->GetStream();
+  volume.Stream = stream->GetPointer(0);
+  volume.StreamBytes = stream->GetNumberOfValues() / 8 * 8;
+  this->Volume->GetDimensions(volume.Samples);
+  volume.BlockBits = this->Volume->GetBlockBits();
+  this->HaveScene = false;
+  if (!this->Pipeline.SetVolume(volume))
+  {
+    return this->Report(this->Pipeline.GetError());
+  }
+  this->UploadTime.Modified();
+  return true;
+}
+
+//------------------------------------------------------------------------------
+// The image
+//------------------------------------------------------------------------------
+// Restarts the image where its hits change, and orders new shading where only its look does.
+bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(vtkRenderer* renderer, vtkVolume* volume)
+{
+  SceneBlock scene = TranslateScene(renderer, volume, this->Compressed, this->Volume);
+  const bool sameHits = this->HaveScene && SameHits(this->Scene, scene);
+  const bool sameLook = sameHits && SameLook(this->Scene, scene);
+  if (sameHits)
+  {
+    KeepHits(this->Scene, scene);
+  }
+  this->Scene = scene;
+  this->HaveScene = true;
+  this->Pipeline.SetLimits(this->Owner->CacheLimit, this->Owner->SpeculationLimit);
+  if (!this->Pipeline.SetScene(scene))
+  {
+    return this->Report(this->Pipeline.GetError());
+  }
+  if (!sameHits)
+  {
+    this->TotalMilliseconds = 0.0;
+    this->Pipeline.Start();
+  }
+  this->ShadeAgain = sameHits && !sameLook;
+  return true;
+}
+
+// Whether somebody will render again if the image stays incomplete now.
+bool vtkProgressiveIsosurfaceMapper::Internals::MayRefineLater(vtkOpenGLRenderWindow* window) const
+{
+  vtkRenderWindowInteractor* interactor = window->GetInteractor();
+  return interactor && interactor->GetInitialized() && !window->GetOffScreenRendering() && window->GetSwapBuffers();
+}
+
+void vtkProgressiveIsosurfaceMapper::Internals::Refine(vtkOpenGLRenderWindow* window)
+{
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  const bool interactive = this->MayRefineLater(window);
+  const double allowance = this->Owner->TimeAllowance;
+  auto stop = [&]()
+  {
+    const std::chrono::duration<double> spent = Clock::now() - start;
+    return interactive && (spent.count() >= allowance || window->CheckAbortStatus());
+  };
+  const bool unfinished = !this->Pipeline.GetConverged();
+  if (unfinished)
+  {
+    this->Pipeline.RunPasses(this->Owner->MaximumPassesPerRender, interactive, stop);
+  }
+  if (unfinished || this->ShadeAgain)
+  {
+    this->Pipeline.ShadeHits(this->ShadeAgain);
+    this->TotalMilliseconds += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  }
+  this->ShadeAgain = false;
+}
+
+void vtkProgressiveIsosurfaceMapper::Internals::Composite(vtkOpenGLRenderWindow* window)
+{
+  vtkOpenGLState* state = window->GetState();
+  vtkOpenGLState::ScopedglEnableDisable blend(state, GL_BLEND);
+  vtkOpenGLState::ScopedglEnableDisable depthTest(state, GL_DEPTH_TEST);
+  vtkOpenGLState::ScopedglEnableDisable cullFace(state, GL_CULL_FACE);
+  vtkOpenGLState::ScopedglDepthMask depthMask(state);
+  vtkOpenGLState::ScopedglDepthFunc depthFunction(state);
+  state->vtkglDisable(GL_BLEND);
+  state->vtkglDisable(GL_CULL_FACE);
+  state->vtkglEnable(GL_DEPTH_TEST);
+  state->vtkglDepthMask(GL_TRUE);
+  state->vtkglDepthFunc(GL_LEQUAL);
+  this->Pipeline.Composite();
+}
+
+// Asks the interactor for another render as soon as it is idle.
+void vtkProgressiveIsosurfaceMapper::Internals::RequestRender(vtkOpenGLRenderWindow* window)
+{
+  vtkRenderWindowInteractor* interactor = window->GetInteractor();
+  if (this->Pipeline.GetConverged() || !this->MayRefineLater(window))
+  {
+    return;
+  }
+  if (this->Interactor != interactor)
+  {
+    if (this->Interactor)
+    {
+      this->Interactor->RemoveObserver(this->TimerObserver);
+    }
+    this->Interactor = interactor;
+    this->TimerObserver = interactor->AddObserver(vtkCommand::TimerEvent, this, &Internals::OnTimer);
+    this->TimerId = -1;
+  }
+  if (this->TimerId < 0)
+  {
+    this->TimerId = interactor->CreateOneShotTimer(1);
+  }
+}
+
+void vtkProgressiveIsosurfaceMapper::Internals::OnTimer(vtkObject*, unsigned long, void* data)
+{
+  if (!data || *static_cast<int*>(data) != this->TimerId)
+  {
+    return;
+  }
+  this->TimerId = -1;
+  if (this->Interactor)
+  {
+    this->Interactor->Render();
+  }
+}
+
+void vtkProgressiveIsosurfaceMapper::Internals::FillStatistics()
+{
+  vtkProgressiveIsosurfaceStatistics* statistics = this->Owner->Statistics;
+  vtkTable* table = statistics->Passes;
+  const std::vector<TimedPass>& passes = this->Pipeline.GetPasses();
+  const double pixels = static_cast<double>(this->Scene.Image[0]) * this->Scene.Image[1];
+  table->SetNumberOfRows(static_cast<vtkIdType>(passes.size()));
+  for (std::size_t i = 0; i < passes.size(); ++i)
+  {
+    const TimedPass& p = passes[i];
+    const double row[] = { static_cast<double>(i), static_cast<double>(p.ActiveRays),
+      static_cast<double>(p.Speculation), static_cast<double>(p.Pairs), static_cast<double>(p.VisibleBlocks),
+      static_cast<double>(p.ActiveBlocks), static_cast<double>(p.DecodedBlocks),
+      static_cast<double>(p.CachedBlocks), 1.0 - p.RemainingRays / pixels, p.ElapsedMilliseconds };
+    for (int column = 0; column < table->GetNumberOfColumns(); ++column)
+    {
+      vtkDoubleArray::SafeDownCast(table->GetColumn(column))->SetValue(static_cast<vtkIdType>(i), row[column]);
+    }
+  }
+  statistics->Buffers.clear();
+  for (const BufferInfo& info : PipelineBuffers())
+  {
+    if (this->Pipeline.GetBufferBytes(info.Id) > 0)
+    {
+      statistics->Buffers.emplace_back(info.Name, this->Pipeline.GetBufferBytes(info.Id));
+    }
+  }
+  statistics->Buffers.emplace_back("scene", this->Pipeline.GetSceneBytes());
+  statistics->Stages.clear();
+  statistics->StagesLeftOut.clear();
+  for (const StageInfo& info : PipelineStages())
+  {
+    const bool ran = this->Pipeline.GetStagesRun().count(info.Id) > 0;
+    (ran ? statistics->Stages : statistics->StagesLeftOut).emplace_back(info.Name);
+  }
+  statistics->TotalMilliseconds = this->TotalMilliseconds;
+  statistics->Converged = this->Pipeline.GetConverged();
+  statistics->GLDescription = this->Pipeline.GetDescription();
+  statistics->Modified();
+}
+
+//------------------------------------------------------------------------------
+// The mapper
+//------------------------------------------------------------------------------
+vtkStandardNewMacro(vtkProgressiveIsosurfaceMapper);
+
+vtkProgressiveIsosurfaceMapper::vtkProgressiveIsosurfaceMapper()
+  : Impl(new Internals(this))
+{
+}
+
+vtkProgressiveIsosurfaceMapper::~vtkProgressiveIsosurfaceMapper() = default;
+
+void vtkProgressiveIsosurfaceMapper::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Rate: " << this->Rate << "\n";
+  os << indent << "Component: " << this->Component << "\n";
+  os << indent << "SpeculationLimit: " << this->SpeculationLimit << "\n";
+  os << indent << "CacheLimit: " << this->CacheLimit << "\n";
+  os << indent << "MaximumPassesPerRender: " << this->MaximumPassesPerRender << "\n";
+  os << indent << "TimeAllowance: " << this->TimeAllowance << "\n";
+  os << indent << "Statistics:\n";
+  this->Statistics->PrintSelf(os, indent.GetNextIndent());
+}
+
+int vtkProgressiveIsosurfaceMapper::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  return 1;
+}
+
+bool vtkProgressiveIsosurfaceMapper::GetConverged()
+{
+  return this->Impl->Pipeline.GetConverged();
+}
+
+double vtkProgressiveIsosurfaceMapper::GetCompletedFraction()
+{
+  return this->Impl->Pipeline.GetCompletedFraction();
+}
+
+vtkProgressiveIsosurfaceStatistics* vtkProgressiveIsosurfaceMapper::GetStatistics()
+{
+  return this->Statistics;
+}
+
+int vtkProgressiveIsosurfaceMapper::GetNumberOfGLErrors()
+{
+  return this->Impl->Pipeline.GetNumberOfGLErrors();
+}
+
+void vtkProgressiveIsosurfaceMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
+{
+  auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
+  if (!window)
+  {
+    vtkErrorMacro("needs an OpenGL render window");
+    return;
+  }
+  if (renderer->GetSelector() || !this->Impl->UpdateVolume())
+  {
+    return; // a selection pass draws identifiers, not images
+  }
+  if (volume->GetProperty()->GetIsoSurfaceValues()->GetNumberOfContours() > 1)
+  {
+    vtkWarningMacro("renders one isosurface: the property's first isovalue is taken, the others are not");
+  }
+  window->MakeCurrent();
+  if (!this->Impl->BindWindow(window) || !this->Impl->UploadVolume() || !this->Impl->UpdateScene(renderer, volume))
+  {
+    return;
+  }
+  this->Impl->Refine(window);
+  if (!this->Impl->Pipeline.GetError().empty())
+  {
+    vtkErrorMacro(<< this->Impl->Pipeline.GetError());
+    return;
+  }
+  this->Impl->Composite(window);
+  this->Impl->FillStatistics();
+  double fraction = this->GetCompletedFraction();
+  this->InvokeEvent(vtkCommand::ProgressEvent, &fraction);
+  this->Impl->RequestRender(window);
+}
+
+void vtkProgressiveIsosurfaceMapper::ReleaseGraphicsResources(vtkWindow* window)
+{
+  if (this->Impl->Window && (!window || window == this->Impl->Window))
+  {
+    this->Impl->ReleaseGraphics();
+  }
+  this->Superclass::ReleaseGraphicsResources(window);
+}
+
+bool vtkProgressiveIsosurfaceMapper::GetDepthImage(vtkImageData* image)
+{
+  if (!image || !this->Impl->HaveScene || !this->Impl->Window)
+  {
+    vtkErrorMacro("has no depths yet: render first");
+    return false;
+  }
+  this->Impl->Window->MakeCurrent();
+  const SceneBlock& scene = this->Impl->Pipeline.GetScene();
+  const std::vector<std::uint32_t> keys = this->Impl->Pipeline.ReadHitKeys();
+  vtkNew<vtkFloatArray> depths;
+  depths->SetName("Depth");
+  depths->SetNumberOfValues(static_cast<vtkIdType>(keys.size()));
+  for (int y = 0; y < scene.Image[1]; ++y)
+  {
+    for (int x = 0; x < scene.Image[0]; ++x)
+    {
+      const vtkIdType pixel = static_cast<vtkIdType>(y) * scene.Image[0] + x;
+      depths->SetValue(pixel, HitDistance(scene, x, y, keys[pixel]));
+    }
+  }
+  image->SetDimensions(scene.Image[0], scene.Image[1], 1);
+  image->GetPointData()->SetScalars(depths);
+  return true;
+}
+
+bool vtkProgressiveIsosurfaceMapper::DecodeOnGPU(vtkRenderWindow* window, vtkImageData* compressed, vtkFloatArray* samples)
+{
+  auto* glWindow = vtkOpenGLRenderWindow::SafeDownCast(window);
+  vtkNew<vtkCompressedVolume> source;
+  if (!glWindow || !compressed || !samples)
+  {
+    vtkErrorMacro("DecodeOnGPU needs an OpenGL window, a compressed volume and an array");
+    return false;
+  }
+  if (!source->Read(compressed))
+  {
+    return this->Impl->Report(source->GetErrorMessage());
+  }
+  glWindow->Initialize();
+  glWindow->MakeCurrent();
+  PipelineVolume volume;
+  volume.Stream = source->GetStream()->GetPointer(0);
+  volume.StreamBytes = source->GetStream()->GetNumberOfValues() / 8 * 8;
+  source->GetDimensions(volume.Samples);
+  volume.BlockBits = source->GetBlockBits();
+  ProgressivePipeline pipeline;
+  glWindow->GetShaderCache()->ReleaseCurrentShader();
+  bool good = pipeline.Initialize() && pipeline.SetVolume(volume);
+  samples->SetNumberOfComponents(1);
+  samples->SetNumberOfTuples(static_cast<vtkIdType>(volume.Samples[0]) * volume.Samples[1] * volume.Samples[2]);
+  constexpr std::int64_t batch = 4096;
+  std::vector<float> values(64 * batch);
+  int blocks[3];
+  source->GetBlocks(blocks);
+  const std::int64_t total = source->GetNumberOfBlocks();
+  for (std::int64_t first = 0; good && first < total; first += batch)
+  {
+    const std::int64_t count = std::min(batch, total - first);
+    good = pipeline.DecodeBlocks(first, count, values.data());
+    for (std::int64_t i = 0; good && i < 64 * count; ++i)
+    {
+      const std::int64_t block = first + i / 64;
+      const int x = static_cast<int>(4 * (block % blocks[0]) + i % 4);
+      const int y = static_cast<int>(4 * (block / blocks[0] % blocks[1]) + i / 4 % 4);
+      const int z = static_cast<int>(4 * (block / blocks[0] / blocks[1]) + i / 16 % 4);
+      if (x < volume.Samples[0] && y < volume.Samples[1] && z < volume.Samples[2])
+      {
+        samples->SetValue(x + volume.Samples[0] * (y + static_cast<vtkIdType>(volume.Samples[1]) * z), values[i]);
+      }
+    }
+  }
+  const std::string error = pipeline.GetError();
+  pipeline.Release();
+  glUseProgram(0);
+  return good || this->Impl->Report(error);
+}

@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkProgressiveIsosurfaceMapper
+ * @brief   progressive isosurfaces of ZFP-compressed volumes within a small memory footprint
+ *
+ * Renders the isosurface of a compressed volume (see vtkCompressedVolume) by progressive speculative
+ * iso-raycasting on the GPU: rays travel in a wavefront, only the 4^3 blocks that they meet are
+ * decompressed into a cache, the image shows after every pass, and slots of rays that are done let the
+ * others test blocks ahead (Usher, Dyken and Kumar, LDAV 2023). A plain vtkImageData as input is
+ * compressed on the fly, so that the mapper drops in for vtkGPUVolumeRayCastMapper in isosurface blend
+ * mode. Not for translucent or several isosurfaces in one mapper, and not for direct volume rendering.
+ *
+ * The surface is that of the trilinear interpolant of the decompressed values, where values below the
+ * isovalue meet values that are not. The isovalue is the first of vtkVolumeProperty::
+ * GetIsoSurfaceValues(), its colour that of the property's transfer function there; shading, ambient,
+ * diffuse, specular and specular power are the property's too.
+ *
+ * Render() in an interactive window performs passes for TimeAllowance seconds, shows what is there and
+ * asks the interactor for another render; everywhere else (off-screen, screenshots, no interactor) it
+ * completes the image. A change of camera, size, isovalue or input restarts it. The complete image does
+ * not depend on the speculation, the cache's size or the number of passes per render.
+ *
+ * Needs OpenGL 4.3. Add it to a scene with a vtkIsosurfaceVolume, which draws in the opaque pass; a
+ * plain vtkVolume works as well but is drawn after translucent geometry.
+ *
+ * Events: vtkCommand::ProgressEvent after every Render() with a double*, the completed fraction.
+ *
+ * @sa vtkIsosurfaceVolume vtkProgressiveIsosurfaceStatistics vtkImageZFPCompress
+ */
+#ifndef vtkProgressiveIsosurfaceMapper_h
+#define vtkProgressiveIsosurfaceMapper_h
+
+#include "vtkNew.h"                  // for the statistics
+#include "vtkProgIsoKernelsModule.h" // for export macro
+#include "vtkVolumeMapper.h"
+
+#include <memory> // for the implementation
+
+class vtkFloatArray;
+class vtkImageData;
+class vtkProgressiveIsosurfaceStatistics;
+class vtkRenderWindow;
+
+class VTKPROGISOKERNELS_EXPORT vtkProgressiveIsosurfaceMapper : public vtkVolumeMapper
+{
+public:
+  static vtkProgressiveIsosurfaceMapper* New();
+  vtkTypeMacro(vtkProgressiveIsosurfaceMapper, vtkVolumeMapper);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Rate in bits per voxel at which plain input is compressed, 9/64 … 32. Default 8. Compressed input
+   * keeps its own.
+   */
+  vtkSetClampMacro(Rate, double, 9.0 / 64.0, 32.0);
+  vtkGetMacro(Rate, double);
+  ///@}
+
+  ///@{
+  /**
+   * Component of plain input that is rendered. Default 0.
+   */
+  vtkSetClampMacro(Component, int, 0, VTK_INT_MAX);
+  vtkGetMacro(Component, int);
+  ///@}
+
+  ///@{
+  /**
+   * The most blocks that a ray may test in one pass, 1 (no speculation) … 64. Default 64.
+   */
+  vtkSetClampMacro(SpeculationLimit, int, 1, 64);
+  vtkGetMacro(SpeculationLimit, int);
+  ///@}
+
+  ///@{
+  /**
+   * Bound in bytes on the GPU memory of the block cache with its bookkeeping; 0 (default): automatic,
+   * at most 1 GiB. The cache starts small and grows up to this bound as the scene demands. It never
+   * gets smaller than the 128 blocks that the algorithm needs to get on.
+   */
+  vtkSetClampMacro(CacheLimit, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
+  vtkGetMacro(CacheLimit, vtkTypeInt64);
+  ///@}
+
+  ///@{
+  /**
+   * The most passes in one Render(); 0 (default): no bound. With a bound, an image may need several
+   * renders also off-screen.
+   */
+  vtkSetClampMacro(MaximumPassesPerRender, int, 0, VTK_INT_MAX);
+  vtkGetMacro(MaximumPassesPerRender, int);
+  ///@}
+
+  ///@{
+  /**
+   * Seconds after which Render() in an interactive window starts no further pass. Default 0.05.
+   */
+  vtkSetClampMacro(TimeAllowance, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(TimeAllowance, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the image of the last Render() is complete, and the fraction of its pixels that are.
+   */
+  bool GetConverged();
+  double GetCompletedFraction();
+  ///@}
+
+  /**
+   * What the image cost so far.
+   */
+  vtkProgressiveIsosurfaceStatistics* GetStatistics();
+
+  /**
+   * Fill `image` with the depths of the last Render(): float scalars "Depth", one a pixel of the
+   * viewport in VTK's row order, distance along the ray in world units from the camera's position (in
+   * parallel projection from the camera plane), infinity where no surface was hit. Returns false, with an
+   * error event, where nothing was rendered yet.
+   */
+  bool GetDepthImage(vtkImageData* image);
+
+  /**
+   * For tests: decode all samples of a compressed volume with the GPU's decoder, into `samples` in
+   * x-fastest order. Returns false, with an error event, where that is not possible.
+   */
+  bool DecodeOnGPU(vtkRenderWindow* window, vtkImageData* compressed, vtkFloatArray* samples);
+
+  /**
+   * OpenGL errors seen since the graphics resources were made. Counted where the environment variable
+   * PROGISO_GL_DEBUG is set to 1.
+   */
+  int GetNumberOfGLErrors();
+
+  void Render(vtkRenderer* renderer, vtkVolume* volume) override;
+  void ReleaseGraphicsResources(vtkWindow* window) override;
+
+protected:
+  vtkProgressiveIsosurfaceMapper();
+  ~vtkProgressiveIsosurfaceMapper() override;
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+
+  double Rate = 8.0;
+  int Component = 0;
+  int SpeculationLimit = 64;
+  vtkTypeInt64 CacheLimit = 0;
+  int MaximumPassesPerRender = 0;
+  double TimeAllowance = 0.05;
+
+private:
+  vtkProgressiveIsosurfaceMapper(const vtkProgressiveIsosurfaceMapper&) = delete;
+  void operator=(const vtkProgressiveIsosurfaceMapper&) = delete;
+
+  class Internals;
+  std::unique_ptr<Internals> Impl;
+  vtkNew<vtkProgressiveIsosurfaceStatistics> Statistics;
+};
+
+#endif
