@@ -124,6 +124,7 @@ vtkDataArray* vtkImageZFPCompress::FindArray(
   vtkInformation* choice = this->GetInputArrayInformation(0);
   const char* chosen =
     choice->Has(vtkDataObject::FIELD_NAME()) ? choice->Get(vtkDataObject::FIELD_NAME()) : nullptr;
+  chosen = chosen && *chosen ? chosen : nullptr; // ParaView's property for "not chosen yet" is an empty name
   vtkDataArray* array = this->GetInputArrayToProcess(0, inputVector);
   if (!array && !chosen)
   {
