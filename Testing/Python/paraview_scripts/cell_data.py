@@ -16,7 +16,7 @@ simple.Hide(cells, view)
 
 # compressed cell data: the same image
 compressed = ZFPCompress(Input=cells, Rate=8)
-assert list(compressed.SelectInputArray) == ["CELLS", "RTData"], list(compressed.SelectInputArray)
+assert list(compressed.InputArray) == ["CELLS", "RTData"], list(compressed.InputArray)
 show_isosurface(compressed, view, Isovalue=150.0)
 check_same(shown, screenshot(view, "cells_compressed.png"))
 simple.Hide(compressed, view)

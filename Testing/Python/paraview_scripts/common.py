@@ -27,10 +27,11 @@ def load_plugin(namespace):
 
 
 def make_view(size=SIZE):
-    """A render view of fixed size, plain background and no decoration."""
+    """A render view of fixed size, with a plain background, no decoration and no blending between neighbouring pixels."""
     view = simple.CreateView("RenderView")
     view.ViewSize = list(size)
     view.OrientationAxesVisibility = 0
+    view.UseFXAA = 0  # a pixel's colour is then its own
     view.UseColorPaletteForBackground = 0
     view.Background = [0.1, 0.1, 0.15]
     return view

@@ -6,7 +6,7 @@ load_plugin(globals())
 view = make_view()
 wavelet = make_wavelet()
 compressed = ZFPCompress(Input=wavelet, Rate=12)
-assert list(compressed.SelectInputArray) == ["POINTS", "RTData"], list(compressed.SelectInputArray)
+assert list(compressed.InputArray) == ["POINTS", "RTData"], list(compressed.InputArray)
 compressed.UpdatePipeline()
 assert compressed.PointData.GetNumberOfArrays() == 0
 compressed.SMProxy.UpdatePropertyInformation()
