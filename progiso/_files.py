@@ -8,6 +8,34 @@ from contextlib import contextmanager
 from pathlib import Path
 
 
+def check_output(path, suffixes=None):
+    """Find out before long work whether its result can be written.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        The file to create or replace.
+    suffixes : sequence of str, optional
+        What its name may end in.
+
+    Raises
+    ------
+    ValueError
+        When the name ends in something else.
+    FileNotFoundError, IsADirectoryError, PermissionError
+        When the folder does not exist or is not writable, or `path` is a folder.
+    """
+    path = Path(path)
+    if suffixes is not None and not path.name.lower().endswith(tuple(suffixes)):
+        raise ValueError(f"do not know how to write '{path}': use one of {', '.join(suffixes)}")
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"cannot write '{path}': folder '{path.parent}' does not exist")
+    if path.is_dir():
+        raise IsADirectoryError(f"cannot write '{path}': it is a folder")
+    if not os.access(path.parent, os.W_OK):
+        raise PermissionError(f"cannot write '{path}': folder '{path.parent}' is not writable")
+
+
 @contextmanager
 def atomic_path(path):
     """Give a temporary path to write to, renamed to `path` when the block succeeds.
@@ -25,8 +53,8 @@ def atomic_path(path):
 
     Raises
     ------
-    FileNotFoundError
-        When the folder of `path` does not exist.
+    OSError
+        When `path` cannot be written, see `check_output`.
 
     Examples
     --------
@@ -34,10 +62,7 @@ def atomic_path(path):
     ...     numpy.save(temporary, depth)
     """
     path = Path(path)
-    if not path.parent.is_dir():
-        raise FileNotFoundError(f"cannot write '{path}': folder '{path.parent}' does not exist")
-    if path.is_dir():
-        raise IsADirectoryError(f"cannot write '{path}': it is a folder")
+    check_output(path)
     with tempfile.TemporaryDirectory(prefix=".progiso-", dir=path.parent) as folder:
         temporary = Path(folder) / path.name
         yield temporary

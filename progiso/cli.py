@@ -12,8 +12,9 @@ import numpy as np
 
 import progiso
 
-from ._files import atomic_path
+from ._files import atomic_path, check_output
 from .data import GENERATORS, SCANS, fetch
+from .io import COMPRESSED_SUFFIXES, PLAIN_SUFFIXES
 from .progress import progress_bar
 
 _READABLE = ".vti .mha .mhd .nrrd .nii .nii.gz .vtk .zfp, name_WxHxD_type.raw"
@@ -108,7 +109,10 @@ def _add_decompress(commands):
     command = _add_command(commands, "decompress", _decompress, "decompress into float32 scalars")
     _add_input(command, "in")
     command.add_argument(
-        "out", metavar="OUT", type=Path, help=".vti .mha .nii .nii.gz, name_WxHxD_float32.raw"
+        "out",
+        metavar="OUT",
+        type=Path,
+        help=f"{' '.join(PLAIN_SUFFIXES)}, the latter named name_WxHxD_float32.raw",
     )
 
 
@@ -235,6 +239,7 @@ def _save(image, path):
 
 
 def _compress(parsed):
+    check_output(parsed.out, COMPRESSED_SUFFIXES)
     image = _read(parsed, "in")
     with progress_bar("Compressing") as progress:
         volume = progiso.compress(
@@ -246,6 +251,7 @@ def _compress(parsed):
 
 
 def _decompress(parsed):
+    check_output(parsed.out, PLAIN_SUFFIXES)
     image = _read(parsed, "in")
     with progress_bar("Decompressing") as progress:
         image = progiso.decompress(image, progress=progress)
@@ -309,6 +315,8 @@ def _describe_arrays(attributes):
 
 
 def _render(parsed):
+    for path in filter(None, (parsed.output, parsed.depth, parsed.stats)):
+        check_output(path)
     image = _read(parsed)
     camera = None
     if parsed.orbit is None:

@@ -12,7 +12,7 @@ from vtkmodules.vtkIOXML import (
     vtkXMLPImageDataReader,
 )
 
-from ._files import atomic_path
+from ._files import atomic_path, check_output
 from ._vtk import captured_output, image_data, observe_progress, vtk_errors
 from .compression import is_compressed
 from .metaimage import read_metaimage, write_metaimage
@@ -173,15 +173,14 @@ def save(image, path, progress=None):
     --------
     >>> progiso.save(progiso.compress(image, rate=4), "skull.vti")
     """
+    check_output(path, _WRITERS)
     suffix = suffix_of(path)
-    if suffix not in _WRITERS:
-        raise ValueError(f"do not know how to write '{path}': use one of {', '.join(_WRITERS)}")
     compressed = is_compressed(image_data(image))
     if suffix == ".zfp" and not compressed:
         raise ValueError(
             f"'{path}': a .zfp file holds a compressed volume, compress the image first"
         )
-    if suffix not in (".vti", ".zfp"):
+    if suffix not in COMPRESSED_SUFFIXES:
         _check_plain(image, path, compressed)
     with atomic_path(path) as temporary:
         if suffix == ".vti":
@@ -229,6 +228,10 @@ def _write_zfp(image, path):
     writer.SetInputData(image)
     _write_with(writer, path)
 
+
+#: Formats for compressed volumes, and for plain ones.
+COMPRESSED_SUFFIXES = (".vti", ".zfp")
+PLAIN_SUFFIXES = (".vti", ".mha", ".nii", ".nii.gz", ".raw")
 
 _WRITERS = {
     ".vti": _write_vti,
