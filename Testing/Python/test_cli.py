@@ -1,0 +1,214 @@
+"""``python -m progiso`` as its users call it."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+
+import numpy as np
+import progiso
+import pytest
+import tolerances
+from oracle.caster import Camera, cast
+from scenes import check_depth, orbit
+from support import blobs, make_image, marschner_lobb, reference_values, reference_volume, same_bits, values_of
+from test_statistics import check_memory
+
+
+def call(folder, *arguments, succeeds=True):
+    """Run a command in a folder; return what it prints."""
+    done = subprocess.run(
+        [sys.executable, "-m", "progiso", *map(str, arguments)], cwd=folder, capture_output=True, text=True, env=os.environ
+    )
+    assert (done.returncode == 0) == succeeds, done.stdout + done.stderr
+    return done.stdout if succeeds else done.stderr
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A folder with a plain volume and its compressed twin."""
+    folder = tmp_path_factory.mktemp("cli")
+    values = blobs((40, 36, 44), 3)
+    progiso.save(make_image(values, spacing=(1, 0.8, 1.2), origin=(3, 2, 1)), folder / "plain.vti")
+    values.tofile(folder / "blobs_44x36x40_float32.raw")
+    call(folder, "compress", "plain.vti", "packed.vti", "--rate", 6)
+    return folder
+
+
+def test_compress_is_the_librarys(folder):
+    expected = progiso.compress(progiso.read(folder / "plain.vti"), 6)
+    packed = progiso.read(folder / "packed.vti")
+    assert same_bits(reference_values(packed), reference_values(expected))
+    assert packed.GetSpacing() == expected.GetSpacing() and packed.GetOrigin() == expected.GetOrigin()
+
+
+def test_decompress(folder):
+    call(folder, "decompress", "packed.vti", "unpacked.vti")
+    assert same_bits(values_of(progiso.read(folder / "unpacked.vti")), reference_values(progiso.read(folder / "packed.vti")))
+
+
+def test_info(folder):
+    plain, packed = call(folder, "info", "plain.vti"), call(folder, "info", "packed.vti")
+    for text in (plain, packed):
+        assert "44 36 40" in text and "field" in text
+    assert re.search(r"rate: 6\b", packed) and "rate" not in plain
+
+
+def test_zfp_files(folder):
+    call(folder, "compress", "plain.vti", "packed.zfp", "--rate", 6)
+    subprocess.run(["zfp", "-q", "-h", "-z", "packed.zfp", "-o", "raw"], cwd=folder, check=True)
+    assert same_bits(np.fromfile(folder / "raw", np.float32).reshape(40, 36, 44), reference_values(progiso.read(folder / "packed.vti")))
+
+
+def render(folder, file, *arguments):
+    """Render; return the depth image and the statistics."""
+    out = ("--output", "out.png", "--depth", "out.npy", "--stats", "out.json")
+    call(folder, "render", file, "--isovalue", 0.1, *out, *arguments)
+    assert (folder / "out.png").read_bytes()[:4] == b"\x89PNG"
+    return np.load(folder / "out.npy"), json.loads((folder / "out.json").read_text())
+
+
+def test_render(folder):
+    depth, statistics = render(folder, "packed.vti", "--size", "200x150", "--orbit", "1/5")
+    image = progiso.read(folder / "packed.vti")
+    volume = reference_volume(image)
+    camera = orbit(volume, 1, 5)
+    assert depth.dtype == np.float32 and depth.shape == (150, 200)
+    check_depth(depth, cast(volume, 0.1, camera, (200, 150), tolerances.SLACK))
+    assert statistics["converged"] and statistics["size"] == [200, 150]
+    seen = statistics["camera"]
+    assert seen["position"] == pytest.approx(camera.position) and seen["focal_point"] == pytest.approx(camera.focal_point)
+    assert seen["view_up"] == [0, 1, 0] and seen["view_angle"] == 50 and seen["parallel"] is False
+    check_memory(image, statistics)
+
+
+def test_speculation_only_saves_passes(folder):
+    arguments = ("packed.vti", "--size", "160x120", "--orbit", "2/5")
+    with_it, fast = render(folder, *arguments)
+    without, slow = render(folder, *arguments, "--no-speculation")
+    assert np.isfinite(with_it).any()
+    assert with_it.tobytes() == without.tobytes()
+    assert len(fast["passes"]) < len(slow["passes"])
+    assert all(p["speculation"] == 1 for p in slow["passes"])
+
+
+def test_render_plain_at_a_rate(folder):
+    """A plain file, rendered at a rate, shows what its compressed file shows."""
+    arguments = ("--size", "120x90", "--orbit", "0/3")
+    packed, _ = render(folder, "packed.vti", *arguments)
+    plain, _ = render(folder, "plain.vti", "--rate", 6, *arguments)
+    other, _ = render(folder, "plain.vti", "--rate", 3, *arguments)
+    assert plain.tobytes() == packed.tobytes()
+    assert other.tobytes() != packed.tobytes()
+
+
+def test_render_raw_by_its_name(folder):
+    depth, statistics = render(folder, "blobs_44x36x40_float32.raw", "--size", "120x90", "--orbit", "0/3")
+    volume = reference_volume(progiso.compress(make_image(blobs((40, 36, 44), 3)), 8))
+    check_depth(depth, cast(volume, 0.1, orbit(volume, 0, 3), (120, 90), tolerances.SLACK))
+
+
+def test_render_in_parallel_projection(folder):
+    """Depths count from the camera's plane."""
+    depth, statistics = render(folder, "packed.vti", "--size", "120x90", "--parallel")
+    seen = statistics["camera"]
+    assert seen["parallel"] is True
+    camera = Camera(seen["position"], seen["focal_point"], seen["view_up"], parallel_scale=seen["parallel_scale"])
+    check_depth(depth, cast(reference_volume(progiso.read(folder / "packed.vti")), 0.1, camera, (120, 90), tolerances.SLACK))
+
+
+@pytest.mark.parametrize("suffix", [".mha", ".nii.gz", ".vtk", ".nrrd"])
+def test_other_formats(folder, suffix):
+    """Formats that others write read as the same samples in the same place."""
+    values = marschner_lobb(12)
+    if suffix in (".mha", ".nii.gz"):
+        image = make_image(values, spacing=(1, 0.5, 2), origin=(4, 5, 6))
+        progiso.save(image, folder / f"volume{suffix}")
+    elif suffix == ".vtk":
+        from vtkmodules.vtkIOLegacy import vtkStructuredPointsWriter
+
+        writer = vtkStructuredPointsWriter()
+        writer.SetInputData(make_image(values, spacing=(1, 0.5, 2), origin=(4, 5, 6)))
+        writer.SetFileName(str(folder / "volume.vtk"))
+        assert writer.Write()
+    else:
+        header = "NRRD0004\ntype: float\ndimension: 3\nsizes: 12 12 12\nspacings: 1 0.5 2\naxis mins: 4 5 6\nencoding: raw\nendian: little\n\n"
+        (folder / "volume.nrrd").write_bytes(header.encode() + values.tobytes())
+    about = json.loads(call(folder, "info", f"volume{suffix}", "--json"))
+    assert about["dimensions"] == [12, 12, 12]
+    assert about["spacing"] == pytest.approx([1, 0.5, 2])
+    call(folder, "compress", f"volume{suffix}", "other.vti", "--rate", 32)
+    assert np.abs(reference_values(progiso.read(folder / "other.vti")) - values).max() < 1e-6
+
+
+FAILURES = {
+    "missing file": (["info", "none.vti"], "none.vti"),
+    "unknown format": (["info", "some.xyz"], "some.xyz"),
+    "broken file": (["info", "broken.vti"], "broken.vti"),
+    "rate": (["compress", "plain.vti", "x.vti", "--rate", "40"], "rate"),
+    "array": (["compress", "plain.vti", "x.vti", "--array", "none"], "none"),
+    "decompress plain": (["decompress", "plain.vti", "x.vti"], "compressed"),
+    "size": (["render", "packed.vti", "--isovalue", "0", "--size", "0x5"], "0x5"),
+    "orbit": (["render", "packed.vti", "--isovalue", "0", "--orbit", "5/5"], "5/5"),
+    "isovalue": (["render", "packed.vti", "--isovalue", "nan"], "isovalue"),
+    "output": (["compress", "plain.vti", "nowhere/x.vti"], "nowhere"),
+}
+
+
+@pytest.mark.parametrize("case", FAILURES)
+def test_errors_are_one_line(folder, case):
+    arguments, word = FAILURES[case]
+    (folder / "broken.vti").write_text("<VTKFile")
+    (folder / "some.xyz").write_text("?")
+    lines = call(folder, *arguments, succeeds=False).strip().splitlines()
+    assert len(lines) == 1, lines
+    assert "error" in lines[0] and word in lines[0]
+    assert "Traceback" not in lines[0]
+    assert not (folder / "x.vti").exists()
+
+
+# --- data --------------------------------------------------------------------------------------------------------------------
+
+
+def gyroid(n, k):
+    """Compute gyroid and noise as their definition says, without any of the project's shortcuts."""
+    z, y, x = np.meshgrid(*[np.linspace(-1, 1, n)] * 3, indexing="ij")
+    w = np.pi * k
+    field = np.sin(w * x) * np.cos(w * y) + np.sin(w * y) * np.cos(w * z) + np.sin(w * z) * np.cos(w * x)
+    rng = np.random.default_rng(7)
+    t = np.linspace(0, 1, n)
+    total = np.zeros_like(field)
+    for cells, weight in ((16, 1), (32, 0.5), (64, 0.25)):
+        lattice = rng.standard_normal((cells + 1,) * 3)
+        place = t * cells
+        cell = np.minimum(place.astype(int), cells - 1)
+        s = place - cell
+        fade = 6 * s**5 - 15 * s**4 + 10 * s**3
+        for axis in range(3):
+            low, high = np.take(lattice, cell, axis), np.take(lattice, cell + 1, axis)
+            f = fade.reshape([-1 if a == axis else 1 for a in range(3)])
+            lattice = low * (1 - f) + high * f
+        total += weight * lattice
+    return field + 0.35 * total
+
+
+def test_gyroid_is_as_defined(tmp_path):
+    from progiso.data import fetch
+
+    values = values_of(progiso.read(fetch("gyroid", folder=tmp_path, size=40, k=6)))
+    assert np.abs(values - gyroid(40, 6)).max() < 1e-5
+
+
+def test_generators_make_what_can_be_shown(folder):
+    from progiso.data import GENERATORS
+
+    listed = call(folder, "data")
+    environment = dict(os.environ, XDG_CACHE_HOME=str(folder / "cache"))
+    for name, generator in GENERATORS.items():
+        assert name in listed
+        command = [sys.executable, "-m", "progiso", "data", name, "--size", "24"]
+        done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=True)
+        values = values_of(progiso.read(done.stdout.strip()))
+        assert values.shape == (24, 24, 24)
+        assert values.min() < generator.isovalues[0] < values.max()

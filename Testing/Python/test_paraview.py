@@ -1,0 +1,118 @@
+"""The ParaView stack: the plugin in pvpython and pvbatch, and this folder's other tests on ParaView's own VTK."""
+
+import importlib.util
+import itertools
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+
+import numpy as np
+import pictures
+import pytest
+from support import make_image, marschner_lobb
+
+pytestmark = pytest.mark.paraview
+
+HERE = pathlib.Path(__file__).resolve().parent
+displays = itertools.count(2000 + os.getpid() % 20000)
+WARNINGS = ("ERR|", "( ERR", "ERROR", "Traceback", "Segmentation")
+
+
+@pytest.fixture(scope="module")
+def build():
+    """Find the build of the plugin; without one fail in continuous integration, and skip elsewhere."""
+    folder = os.environ.get("PROGISO_PARAVIEW_BUILD")
+    if not folder:
+        (pytest.fail if os.environ.get("CI") else pytest.skip)("PROGISO_PARAVIEW_BUILD does not name a build for ParaView")
+    return pathlib.Path(folder)
+
+
+@pytest.fixture(scope="module")
+def packages(build):
+    found = list(build.glob("lib/**/site-packages"))
+    assert found, f"no Python packages below {build}/lib"
+    return found[0]
+
+
+@pytest.fixture(scope="module")
+def plugin(build):
+    found = [p for p in build.glob("lib/**/ProgIso.so") if "plugins" in str(p)]
+    assert found, f"no plugin below {build}/lib"
+    return found[0]
+
+
+def under_x(*command, python_path=(), timeout=600):
+    """Run a command in a virtual display of its own; return its output."""
+    assert shutil.which("xvfb-run"), "the tests of the plugin need xvfb-run (Debian: xvfb, xauth)"
+    environment = {k: v for k, v in os.environ.items() if k not in ("VTK_DEFAULT_OPENGL_WINDOW", "PYTHONPATH", "VIRTUAL_ENV", "DISPLAY")}
+    environment["PYTHONPATH"] = os.pathsep.join(map(str, python_path))
+    environment["PROGISO_GL_DEBUG"] = "1"
+    display = ["xvfb-run", "-n", str(next(displays)), "-s", "-screen 0 1280x1024x24"]
+    done = subprocess.run([*display, *map(str, command)], env=environment, capture_output=True, text=True, timeout=timeout)
+    output = done.stdout + done.stderr
+    assert done.returncode == 0, output[-6000:]
+    return output
+
+
+@pytest.fixture(scope="module", params=["pvpython", "pvbatch"])
+def shown(request, build, plugin, packages, tmp_path_factory):
+    """Run the script that shows everything; return the folder with its pictures."""
+    import progiso
+
+    folder = tmp_path_factory.mktemp(request.param)
+    progiso.save(progiso.compress(make_image(marschner_lobb(64)), 8), folder / "volume.vti")
+    script = HERE / "paraview_scripts" / "show.py"
+    output = under_x(request.param, script, plugin, folder / "volume.vti", folder, python_path=[packages])
+    assert "done" in output and not any(word in output for word in WARNINGS), output[-6000:]
+    return folder
+
+
+PICTURES = ["paraview-plain", "paraview-compressed", "paraview-no-speculation", "paraview-among-meshes", "paraview-file"]
+
+
+@pytest.mark.parametrize("name", PICTURES)
+def test_pictures(shown, name, request, tmp_path):
+    pictures.check_picture(pictures.read_png(shown / f"{name}.png"), name, request.config, tmp_path)
+
+
+def test_facts(shown):
+    facts = json.loads((shown / "facts.json").read_text())
+    low, high = facts.pop("restored")
+    assert 30 < low < 60 and 250 < high < 300
+    for name, values in facts.items():
+        assert values["CompletedFraction"] == 1, name
+        assert values["NumberOfPasses"] > 0 and values["TotalMilliseconds"] > 0, name
+        assert values["GPUBytes"] > values["CompressedBytes"] > 0, name
+    assert facts["paraview-no-speculation"]["NumberOfPasses"] > facts["paraview-compressed"]["NumberOfPasses"]
+    # 11 x 9 x 7 blocks at 8 bits a voxel
+    assert facts["paraview-compressed"]["CompressedBytes"] == pytest.approx(11 * 9 * 7 * 64, abs=64)
+
+
+def test_ways_to_the_same_picture(shown):
+    """Compressed on the fly or before, with and without speculation: not one pixel differs."""
+    first, *others = (pictures.read_png(shown / f"{name}.png") for name in PICTURES[:3])
+    assert np.ptp(first) > 100
+    assert all(np.array_equal(first, other) for other in others)
+
+
+CORE = {
+    "filters": ["test_filters.py", "-k", "not pyvista"],
+    "decoder": ["test_decode.py", "-k", "all_rates or extreme or random_streams"],
+    "depth": ["test_depth.py", "-k", "white_noise or geometry or camera_inside or along_an_axis or ct-cranium"],
+    "invariance": ["test_invariance.py", "test_scene.py"],
+}
+
+
+@pytest.mark.parametrize("part", CORE)
+def test_core_on_paraviews_vtk(part, build, packages, tmp_path):
+    """The same tests, with ParaView's VTK and Python."""
+    for name in ("pytest", "_pytest", "pluggy", "iniconfig", "packaging", "pygments"):
+        spec = importlib.util.find_spec(name)
+        (tmp_path / name).symlink_to(pathlib.Path(spec.origin).parent)
+    arguments = [str(HERE / a) if a.endswith(".py") else a for a in CORE[part]]
+    python = os.environ.get("PROGISO_PARAVIEW_PYTHON", "/usr/bin/python3")
+    command = (python, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *arguments)
+    output = under_x(*command, python_path=[packages, tmp_path], timeout=900)
+    assert " passed" in output and "failed" not in output
