@@ -68,7 +68,7 @@ EyeRays MakeEyeRays(vtkMatrix4x4* projection, int width, int height)
 }
 
 // Index space of the samples to world: extent, origin, spacing, direction, the prop's matrix.
-void SamplesToWorld(vtkVolume* volume, vtkImageData* image, const vtkCompressedVolume* compressed, vtkMatrix4x4* matrix)
+void SamplesToWorld(vtkVolume* volume, vtkImageData* image, vtkCompressedVolume* compressed, vtkMatrix4x4* matrix)
 {
   const double shift = compressed->GetAssociation() == vtkCompressedVolume::CellData ? 0.5 : 0.0;
   const int* extent = image->GetExtent();
@@ -197,7 +197,7 @@ constexpr std::size_t LookBegins = offsetof(SceneBlock, NormalMatrix);
 constexpr std::size_t ExactBegins = offsetof(SceneBlock, Samples);
 }
 
-SceneBlock TranslateScene(vtkRenderer* renderer, vtkVolume* volume, vtkImageData* image, const vtkCompressedVolume* compressed)
+SceneBlock TranslateScene(vtkRenderer* renderer, vtkVolume* volume, vtkImageData* image, vtkCompressedVolume* compressed)
 {
   SceneBlock scene;
   renderer->GetTiledSizeAndOrigin(&scene.Image[0], &scene.Image[1], &scene.Image[2], &scene.Image[3]);

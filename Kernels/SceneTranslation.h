@@ -16,7 +16,7 @@ class vtkVolume;
 
 /// Rays, image, isovalue, lights and material of a volume seen by a renderer's camera. Samples, Blocks,
 /// CoarseCells, Payload and Cache are the pipeline's own business.
-SceneBlock TranslateScene(vtkRenderer* renderer, vtkVolume* volume, vtkImageData* image, const vtkCompressedVolume* compressed);
+SceneBlock TranslateScene(vtkRenderer* renderer, vtkVolume* volume, vtkImageData* image, vtkCompressedVolume* compressed);
 
 /// Do two scenes have the same hits? Cameras are compared with a relative tolerance of 1e-7:
 /// vtkWindowToImageFilter perturbs the view angle by rounding.

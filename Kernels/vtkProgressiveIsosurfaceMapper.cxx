@@ -173,7 +173,7 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateVolume()
     return true;
   }
   this->ReleaseInput();
-  vtkSmartPointer<vtkImageData> volume = compressed ? image : this->Compress(image, array, cellData);
+  vtkSmartPointer<vtkImageData> volume = compressed ? vtkSmartPointer<vtkImageData>(image) : this->Compress(image, array, cellData);
   if (!this->Volume->Read(volume))
   {
     return compressed ? this->Report(this->Volume->GetErrorMessage()) : false; // the filter has told why

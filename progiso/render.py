@@ -181,7 +181,7 @@ def _check_opengl(window):
 def _pixels(window, width, height):
     """The window's colours, top row first."""
     pixels = vtkUnsignedCharArray()
-    window.GetPixelData(0, 0, width - 1, height - 1, 1, pixels)
+    window.GetPixelData(0, 0, width - 1, height - 1, 1, pixels, 0)
     return np.ascontiguousarray(vtk_to_numpy(pixels).reshape(height, width, 3)[::-1])
 
 
