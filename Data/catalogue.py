@@ -146,7 +146,7 @@ SCANS = {
     for scan in (
         Scan(
             name="ct-cranium",
-            description="CT of a human head; face towards -y, top towards +z",
+            description="CT of a human head; face towards +y, top towards +z",
             dimensions=(256, 256, 108),
             spacing=(0.9570312, 0.9570312, 1.5),
             dtype="int16",

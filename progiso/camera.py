@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
+from itertools import product
 
 
 @dataclass(frozen=True)
@@ -117,20 +118,28 @@ view_angle=50.0, parallel=False, parallel_scale=1.0)
     return Camera(position, centre, (0.0, 1.0, 0.0), 50.0)
 
 
-def view_camera(target, direction=(0.45, -1.0, 0.3), view_up=(0.0, 0.0, 1.0), parallel=False):
-    """Camera that sees a whole volume from a direction.
+def view_camera(
+    target,
+    direction=(0.45, 1.0, 0.3),
+    view_up=(0.0, 0.0, 1.0),
+    parallel=False,
+    aspect=1.0,
+):
+    """Camera that looks at a volume's centre and just fits its bounds into the picture.
 
     Parameters
     ----------
     target : vtkmodules.vtkCommonDataModel.vtkImageData, vtkProp, or sequence of 6 float
         What has bounds, or the bounds, in world units.
-    direction : sequence of 3 float, default: (0.45, -1, 0.3)
-        From the volume's centre to the camera; any length. The default looks a patient of a scan
-        in left-posterior-superior coordinates in the face, a little from the left and above.
+    direction : sequence of 3 float, default: (0.45, 1, 0.3)
+        From the volume's centre to the camera; any length. The default is a little above and to
+        the side of +y, where the faces of the catalogue's scans look.
     view_up : sequence of 3 float, default: (0, 0, 1)
         What is up in the picture; not parallel to `direction`.
     parallel : bool, default: False
         Parallel projection instead of perspective with a view angle of 30°.
+    aspect : float, default: 1
+        Width over height of the picture.
 
     Returns
     -------
@@ -147,15 +156,14 @@ def view_camera(target, direction=(0.45, -1.0, 0.3), view_up=(0.0, 0.0, 1.0), pa
     (0.0, 0.0, 0.0)
     """
     centre, sides = _centre_and_sides(target)
-    length = math.hypot(*direction)
-    if not length > 0 or not _sine(direction, view_up) > 1e-6:
-        raise ValueError(
-            f"the view direction {direction} and up {view_up} must not be parallel or zero"
-        )
-    radius = 0.5 * math.hypot(*sides)
-    distance = radius / math.sin(math.radians(15))
-    position = tuple(c + distance * d / length for c, d in zip(centre, direction))
-    return Camera(position, centre, tuple(map(float, view_up)), 30.0, parallel, radius)
+    right, up, forward = _basis(direction, view_up)
+    corners = [[s * e / 2 for s, e in zip(sides, signs)] for signs in product((-1, 1), repeat=3)]
+    # Half heights that corners need in the picture, and how far they stand out to the camera.
+    heights = [max(abs(_dot(c, up)), abs(_dot(c, right)) / aspect) for c in corners]
+    slope = math.tan(math.radians(15))
+    distance = max(_dot(c, forward) + h / slope for c, h in zip(corners, heights))
+    position = tuple(c + distance * f for c, f in zip(centre, forward))
+    return Camera(position, centre, tuple(map(float, view_up)), 30.0, parallel, max(heights))
 
 
 def _centre_and_sides(target):
@@ -170,8 +178,26 @@ def _centre_and_sides(target):
     return tuple(float(a + b) / 2 for a, b in zip(low, high)), sides
 
 
-def _sine(a, b):
-    """Sine of the angle between two vectors, 0 when one is zero."""
-    cross = (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-    lengths = math.hypot(*a) * math.hypot(*b)
-    return math.hypot(*cross) / lengths if lengths > 0 else 0.0
+def _basis(direction, view_up):
+    """Unit vectors to the right, up and towards the camera."""
+    right = _cross(view_up, direction)
+    lengths = math.hypot(*direction) * math.hypot(*view_up)
+    if not lengths > 0 or not math.hypot(*right) > 1e-6 * lengths:
+        raise ValueError(
+            f"the view direction {direction} and up {view_up} must not be parallel or zero"
+        )
+    forward, right = _unit(direction), _unit(right)
+    return right, _cross(forward, right), forward
+
+
+def _dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def _cross(a, b):
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def _unit(a):
+    length = math.hypot(*a)
+    return tuple(x / length for x in a)

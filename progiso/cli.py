@@ -151,8 +151,8 @@ def _add_camera(command):
         "--orbit", type=_orbit, metavar="I/N", help="camera I of N around the volume, I from 0"
     )
     command.add_argument(
-        "--view", type=_vector, metavar="X,Y,Z", default=(0.45, -1.0, 0.3),
-        help="direction from the volume to the camera, without --orbit (default: 0.45,-1,0.3)",
+        "--view", type=_vector, metavar="X,Y,Z", default=(0.45, 1.0, 0.3),
+        help="direction from the volume to the camera, without --orbit (default: 0.45,1,0.3)",
     )  # fmt: skip
     command.add_argument(
         "--up", type=_vector, metavar="X,Y,Z", default=(0.0, 0.0, 1.0),
@@ -320,7 +320,8 @@ def _render(parsed):
     image = _read(parsed)
     camera = None
     if parsed.orbit is None:
-        camera = progiso.view_camera(image, parsed.view, parsed.up, parsed.parallel)
+        aspect = parsed.size[0] / max(1, parsed.size[1])
+        camera = progiso.view_camera(image, parsed.view, parsed.up, parsed.parallel, aspect)
     elif parsed.parallel:
         raise ValueError("--orbit is a perspective camera, it does not go with --parallel")
     with progress_bar("Rendering") as progress:

@@ -21,9 +21,9 @@ def make_isosurface(
     speculation=True,
     cache_limit=0,
     shade=True,
-    ambient=0.1,
-    diffuse=0.9,
-    specular=0.2,
+    ambient=0.05,
+    diffuse=0.8,
+    specular=0.15,
     specular_power=20.0,
 ):
     """Make a prop that shows an isosurface of a plain or compressed volume.

@@ -58,7 +58,7 @@ def parse_raw_name(path):
     match = _NAME.fullmatch(Path(path).name)
     if match is None:
         raise ValueError(
-            f"cannot tell dimensions and type of '{path}': a raw file must be named "
+            f"cannot tell dimensions and type of '{Path(path).name}': a raw file must be named "
             f"name_WxHxD_type.raw, type one of {', '.join(TYPES)}"
         )
     dimensions = tuple(int(match[axis]) for axis in "xyz")

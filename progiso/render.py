@@ -112,7 +112,7 @@ def render(
         image = compress(image, rate, array, component, progress=progress)
     volume = make_isosurface(image, isovalue, parse_color(color), speculation=speculation)
     window, renderer = _scene(volume, width, height, parse_color(background))
-    (camera or view_camera(image)).apply(renderer.GetActiveCamera())
+    (camera or view_camera(image, aspect=width / height)).apply(renderer.GetActiveCamera())
     renderer.ResetCameraClippingRange()
     with vtk_errors("cannot render"):
         window.Render()
