@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// vtkCompressedVolume: reads what was written, and rejects with its name whatever is missing, of the
+// wrong type, inconsistent, truncated or too large.
+#include "CompressionTestTools.h"
+
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkIntArray.h>
+#include <vtkSignedCharArray.h>
+#include <vtkTypeInt64Array.h>
+
+#include <limits>
+
+namespace
+{
+using namespace test;
+
+const Dims Size = { 9, 4, 6 };
+
+//------------------------------------------------------------------------------
+void TestStatics()
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT(vtkCompressedVolume::BlockBitsForRate(8.0) == 512, "8");
+  EXPECT(vtkCompressedVolume::BlockBitsForRate(1.03) == 66, "rounded");
+  EXPECT(vtkCompressedVolume::BlockBitsForRate(1e-9) == 9, "least");
+  EXPECT(vtkCompressedVolume::BlockBitsForRate(32.0) == 2048, "most");
+  EXPECT(vtkCompressedVolume::BlockBitsForRate(32.1) == 0, "too much");
+  EXPECT(vtkCompressedVolume::BlockBitsForRate(0.0) == 0, "zero");
+  EXPECT(vtkCompressedVolume::BlockBitsForRate(nan) == 0, "NaN");
+
+  const int most = std::numeric_limits<int>::max();
+  const int small[3] = { 5, 4, 1 };
+  const int huge[3] = { most, most, 16 };
+  const int impossible[3] = { most, most, most };
+  EXPECT(vtkCompressedVolume::NumberOfBlocksFor(small) == 2, "small");
+  EXPECT(vtkCompressedVolume::StreamBytesFor(small, 33) == 16, "66 bits");
+  EXPECT(vtkCompressedVolume::NumberOfBlocksFor(huge) == vtkTypeInt64(1) << 60, "beyond 32 bits");
+  EXPECT(vtkCompressedVolume::NumberOfBlocksFor(impossible) == -1, "overflow of blocks");
+  EXPECT(vtkCompressedVolume::StreamBytesFor(huge, 512) == -1, "overflow of bits");
+}
+
+//------------------------------------------------------------------------------
+// A valid volume with one array of its metadata replaced (or, by null, removed).
+bool ReadWith(const char* name, vtkAbstractArray* array, const std::string& words)
+{
+  const auto image = Compress(FloatImage(Size));
+  const std::string fullName = std::string("ProgIso.ZFP.") + name;
+  image->GetFieldData()->RemoveArray(fullName.c_str());
+  if (array)
+  {
+    array->SetName(fullName.c_str());
+    image->GetFieldData()->AddArray(array);
+  }
+  vtkNew<vtkCompressedVolume> volume;
+  const bool read = volume->Read(image);
+  if (!read)
+  {
+    const bool named = volume->GetErrorMessage().find(words) != std::string::npos;
+    EXPECT(named, "expected '" << words << "', got: " << volume->GetErrorMessage());
+    EXPECT(!volume->GetStream() && volume->GetBlockBits() == 0, "nothing left of it");
+  }
+  return read;
+}
+
+template <typename ArrayT>
+vtkSmartPointer<ArrayT> Values(std::initializer_list<typename ArrayT::ValueType> values)
+{
+  auto array = vtkSmartPointer<ArrayT>::New();
+  for (auto value : values)
+  {
+    array->InsertNextValue(value);
+  }
+  return array;
+}
+
+//------------------------------------------------------------------------------
+void TestRejects()
+{
+  for (const char* name : { "Version", "BlockBits", "Dimensions", "Range", "ScalarType", "ArrayName",
+         "Component", "Association", "Stream" })
+  {
+    EXPECT(!ReadWith(name, nullptr, name), name << " missing");
+    EXPECT(!ReadWith(name, Values<vtkFloatArray>({ 1.f }), name), name << " of wrong type");
+  }
+  const vtkTypeInt64 beyond = vtkTypeInt64(1) << 62;
+  EXPECT(!ReadWith("Version", Values<vtkIntArray>({ 2 }), "version 2"), "version");
+  EXPECT(!ReadWith("BlockBits", Values<vtkIntArray>({ 8 }), "BlockBits is 8"), "too few");
+  EXPECT(!ReadWith("BlockBits", Values<vtkIntArray>({ 2049 }), "BlockBits is 2049"), "too many");
+  EXPECT(!ReadWith("BlockBits", Values<vtkTypeInt64Array>({ beyond + 512 }), "BlockBits"), "64 bits");
+  EXPECT(!ReadWith("BlockBits", Values<vtkIntArray>({ 513 }), "truncated"), "longer than the stream");
+  EXPECT(!ReadWith("Dimensions", Values<vtkIntArray>({ 9, 4 }), "3 integer values"), "two");
+  EXPECT(!ReadWith("Dimensions", Values<vtkIntArray>({ 9, 4, 7 }), "axis 2"), "not the image's");
+  EXPECT(!ReadWith("Dimensions", Values<vtkTypeInt64Array>({ beyond, 4, 6 }), "axis 0"), "64 bits");
+  EXPECT(!ReadWith("Association", Values<vtkIntArray>({ 1 }), "axis 0"), "cells are fewer");
+  EXPECT(!ReadWith("Association", Values<vtkIntArray>({ 2 }), "Association is 2"), "association");
+  EXPECT(!ReadWith("Component", Values<vtkIntArray>({ -1 }), "Component is -1"), "component");
+  EXPECT(!ReadWith("ScalarType", Values<vtkIntArray>({ VTK_STRING }), "ScalarType is 13"), "type");
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT(!ReadWith("Range", Values<vtkDoubleArray>({ 0.0, infinity }), "Range"), "infinite");
+  EXPECT(!ReadWith("Range", Values<vtkDoubleArray>({ 1.0, 0.0 }), "Range"), "reversed");
+  EXPECT(!ReadWith("Stream", Values<vtkSignedCharArray>({ 0 }), "unsigned char"), "signed stream");
+  EXPECT(!ReadWith("Stream", Values<vtkUnsignedCharArray>({ 0 }), "truncated"), "short stream");
+  EXPECT(ReadWith("Dimensions", Values<vtkIntArray>({ 9, 4, 6 }), ""), "any integer type will do");
+}
+
+//------------------------------------------------------------------------------
+// Dimensions that agree with an extent, yet cannot be: nothing may overflow.
+void TestHugeExtent()
+{
+  const int most = std::numeric_limits<int>::max();
+  const auto image = Compress(FloatImage(Size));
+  const auto dims = Values<vtkTypeInt64Array>({ most, most, most });
+  dims->SetName("ProgIso.ZFP.Dimensions");
+  image->SetExtent(0, most - 1, 0, most - 1, 0, most - 1);
+  image->GetFieldData()->AddArray(dims);
+  vtkNew<vtkCompressedVolume> volume;
+  EXPECT(!volume->Read(image), "huge");
+  EXPECT(volume->GetErrorMessage().find("truncated") != std::string::npos, volume->GetErrorMessage());
+}
+
+//------------------------------------------------------------------------------
+void TestReadAndWrite()
+{
+  const auto image = Compress(FloatImage(Size), 2.7);
+  vtkNew<vtkCompressedVolume> volume;
+  EXPECT(volume->Read(image), volume->GetErrorMessage());
+  int blocks[3];
+  volume->GetBlocks(blocks);
+  EXPECT(blocks[0] == 3 && blocks[1] == 1 && blocks[2] == 2, "blocks");
+  EXPECT(volume->GetNumberOfBlocks() == 6 && volume->GetBlockBits() == 173, "bits");
+
+  vtkNew<vtkImageData> other;
+  other->CopyStructure(image);
+  volume->Write(other);
+  vtkNew<vtkCompressedVolume> again;
+  EXPECT(again->Read(other), again->GetErrorMessage());
+  EXPECT(again->GetStream() == volume->GetStream(), "the stream is shared");
+  vtkCompressedVolume::Remove(other);
+  EXPECT(!vtkCompressedVolume::IsCompressed(other), "removed");
+  EXPECT(vtkCompressedVolume::IsCompressed(image), "but not from the original");
+  EXPECT(!again->Read(nullptr) && !again->GetStream(), "no image");
+  std::ostringstream text;
+  volume->Print(text);
+  EXPECT(text.str().find("BlockBits: 173") != std::string::npos, text.str());
+}
+}
+
+int main()
+{
+  TestStatics();
+  TestRejects();
+  TestHugeExtent();
+  TestReadAndWrite();
+  return test::Result();
+}

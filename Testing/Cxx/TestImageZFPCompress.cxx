@@ -1,0 +1,247 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// vtkImageZFPCompress against one call of libzfp: rates, shapes, types, components, threads; and the
+// pipeline around it.
+#include "CompressionTestTools.h"
+
+#include <vtkBitArray.h>
+#include <vtkCommand.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkIntArray.h>
+#include <vtkSOADataArrayTemplate.h>
+
+#include <limits>
+
+namespace
+{
+using namespace test;
+
+vtkSmartPointer<vtkCompressedVolume> Read(vtkImageData* image)
+{
+  auto volume = vtkSmartPointer<vtkCompressedVolume>::New();
+  EXPECT(volume->Read(image), volume->GetErrorMessage());
+  return volume;
+}
+
+//------------------------------------------------------------------------------
+void TestRatesShapesThreads()
+{
+  const double rates[] = { 0.01, 0.5, 1.0, 1.03, 2.7, 8.0, 9.99, 16.0, 31.99, 32.0 };
+  const Dims shapes[] = { { 2, 2, 2 }, { 5, 3, 7 }, { 4, 4, 4 }, { 9, 4, 6 }, { 3, 17, 33 },
+    { 33, 31, 12 }, { 64, 65, 63 } };
+  int threads = 0;
+  for (const Dims& dims : shapes)
+  {
+    for (double rate : rates)
+    {
+      threads = (threads + 1) % 6;
+      vtkNew<vtkImageZFPCompress> compress;
+      compress->SetInputData(FloatImage(dims, threads % 2));
+      compress->SetRate(rate);
+      compress->SetNumberOfThreads(threads);
+      compress->Update();
+      const Reference reference(dims, Samples(dims), rate);
+      const auto volume = Read(compress->GetOutput());
+      EXPECT(reference.Equals(volume->GetStream()), dims[0] << " wide at rate " << rate);
+      EXPECT(volume->GetRate() == reference.Rate, rate);
+      EXPECT(compress->GetActualRate() == reference.Rate, rate);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+// Large enough for several steps, which meet inside a group of blocks and inside a word.
+void TestSteps()
+{
+  const Dims dims = { 301, 299, 41 };
+  for (double rate : { 0.2, 2.5 })
+  {
+    const auto volume = Read(Compress(FloatImage(dims), rate));
+    EXPECT(Reference(dims, Samples(dims), rate).Equals(volume->GetStream()), rate);
+  }
+}
+
+//------------------------------------------------------------------------------
+void TestTypes()
+{
+  const Dims dims = { 6, 7, 5 };
+  for (int type : { VTK_CHAR, VTK_SIGNED_CHAR, VTK_UNSIGNED_CHAR, VTK_SHORT, VTK_UNSIGNED_SHORT,
+         VTK_INT, VTK_UNSIGNED_INT, VTK_LONG, VTK_UNSIGNED_LONG, VTK_LONG_LONG,
+         VTK_UNSIGNED_LONG_LONG, VTK_ID_TYPE, VTK_FLOAT, VTK_DOUBLE, VTK_BIT })
+  {
+    auto array = vtk::TakeSmartPointer(vtkDataArray::CreateDataArray(type));
+    array->SetNumberOfComponents(1);
+    array->SetNumberOfTuples(Product(dims));
+    std::vector<float> values;
+    for (vtkIdType i = 0; i < Product(dims); ++i)
+    {
+      array->SetComponent(i, 0, type == VTK_BIT ? i % 3 == 0 : i % 100);
+      values.push_back(static_cast<float>(array->GetComponent(i, 0)));
+    }
+    const auto volume = Read(Compress(Image(dims, array)));
+    EXPECT(Reference(dims, values, 8.0).Equals(volume->GetStream()), array->GetClassName());
+    EXPECT(volume->GetScalarType() == type, array->GetClassName());
+  }
+}
+
+//------------------------------------------------------------------------------
+void TestComponentsAndChoice()
+{
+  const Dims dims = { 6, 7, 5 };
+  const std::vector<float> values = Samples(dims, 2);
+  const auto interleaved = vtkSmartPointer<vtkDoubleArray>::New();
+  const auto separate = vtkSmartPointer<vtkSOADataArrayTemplate<float>>::New();
+  for (vtkDataArray* array :
+    { static_cast<vtkDataArray*>(interleaved), static_cast<vtkDataArray*>(separate) })
+  {
+    array->SetName("velocity");
+    array->SetNumberOfComponents(3);
+    array->SetNumberOfTuples(Product(dims));
+    for (vtkIdType i = 0; i < Product(dims); ++i)
+    {
+      array->SetTuple3(i, 0.0, -1.0, values[i]);
+    }
+    const auto image = FloatImage(dims);
+    image->GetPointData()->AddArray(array);
+    vtkNew<vtkImageZFPCompress> compress;
+    compress->SetInputData(image);
+    compress->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "velocity");
+    compress->SetComponent(2);
+    compress->Update();
+    const auto volume = Read(compress->GetOutput());
+    EXPECT(Reference(dims, values, 8.0).Equals(volume->GetStream()), array->GetClassName());
+    EXPECT(volume->GetArrayName() == "velocity" && volume->GetComponent() == 2, "metadata");
+  }
+}
+
+//------------------------------------------------------------------------------
+void TestOutput()
+{
+  const Dims dims = { 6, 7, 5 };
+  const auto image = FloatImage(dims);
+  vtkNew<vtkIntArray> field;
+  field->SetName("patient");
+  image->GetFieldData()->AddArray(field);
+  const auto output = Compress(image);
+  EXPECT(SameGeometry(image, output), "geometry");
+  EXPECT(output->GetPointData()->GetNumberOfArrays() == 0, "point arrays");
+  EXPECT(output->GetCellData()->GetNumberOfArrays() == 0, "cell arrays");
+  EXPECT(output->GetFieldData()->HasArray("patient"), "field data is kept");
+  EXPECT(image->GetFieldData()->GetNumberOfArrays() == 1, "the input is untouched");
+
+  const std::vector<float> values = Samples(dims);
+  const auto volume = Read(output);
+  EXPECT(volume->GetRange()[0] == *std::min_element(values.begin(), values.end()), "minimum");
+  EXPECT(volume->GetRange()[1] == *std::max_element(values.begin(), values.end()), "maximum");
+  EXPECT(volume->GetArrayName() == "density", volume->GetArrayName());
+  EXPECT(volume->GetNumberOfBlocks() == 2 * 2 * 2, volume->GetNumberOfBlocks());
+}
+
+//------------------------------------------------------------------------------
+template <typename Prepare>
+void ExpectError(const std::string& words, vtkImageData* image, Prepare prepare)
+{
+  vtkNew<vtkImageZFPCompress> compress;
+  const Errors errors(compress);
+  compress->SetInputData(image);
+  prepare(compress.Get());
+  compress->Update();
+  EXPECT(errors.IsOne(words), "expected '" << words << "', got " << errors.Describe());
+  EXPECT(!vtkCompressedVolume::IsCompressed(compress->GetOutput()), words);
+}
+
+void TestErrors()
+{
+  const auto nothing = [](vtkImageZFPCompress*) {};
+  const auto image = FloatImage({ 6, 7, 5 });
+  for (double rate : { 0.0, -1.0, 32.1, std::numeric_limits<double>::quiet_NaN() })
+  {
+    ExpectError("Rate is", image, [=](vtkImageZFPCompress* c) { c->SetRate(rate); });
+  }
+  ExpectError("Component is 1", image, [](vtkImageZFPCompress* c) { c->SetComponent(1); });
+  ExpectError("array 'pressure' to compress; the input's arrays: density", image,
+    [](vtkImageZFPCompress* c)
+    {
+      c->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "pressure");
+    });
+  ExpectError("7 x 1 x 5 samples", FloatImage({ 7, 1, 5 }), nothing);
+  ExpectError("1 x 7 x 5 samples", FloatImage({ 1, 7, 5 }, true), nothing);
+  vtkNew<vtkImageData> empty;
+  ExpectError("no array", empty, nothing);
+  ExpectError("compressed volume already", Compress(image), nothing);
+
+  std::vector<float> values = Samples({ 6, 7, 5 });
+  values[17] = values[209] = std::numeric_limits<float>::quiet_NaN();
+  values[3] = -std::numeric_limits<float>::infinity();
+  ExpectError("2 NaN and 1 infinite", Image({ 6, 7, 5 }, FloatArray(values)), nothing);
+  vtkNew<vtkDoubleArray> huge;
+  huge->SetNumberOfValues(8);
+  huge->FillValue(1e300); // infinite as float32
+  ExpectError("0 NaN and 8 infinite", Image({ 2, 2, 2 }, huge), nothing);
+}
+
+//------------------------------------------------------------------------------
+void TestPipeline()
+{
+  int runs = 0;
+  vtkNew<vtkCallbackCommand> count;
+  count->SetClientData(&runs);
+  count->SetCallback(
+    [](vtkObject*, unsigned long, void* runs, void*) { ++*static_cast<int*>(runs); });
+  const auto image = FloatImage({ 6, 7, 5 });
+  vtkNew<vtkImageZFPCompress> compress;
+  compress->AddObserver(vtkCommand::StartEvent, count);
+  compress->SetInputData(image);
+  compress->Update();
+  compress->Update();
+  compress->SetRate(compress->GetRate());
+  compress->Update();
+  EXPECT(runs == 1, "unchanged: " << runs);
+  compress->SetRate(4.0);
+  compress->Update();
+  EXPECT(runs == 2, "rate: " << runs);
+  image->Modified();
+  compress->Update();
+  EXPECT(runs == 3, "input: " << runs);
+}
+
+//------------------------------------------------------------------------------
+void TestProgressAndAbort()
+{
+  vtkNew<vtkCallbackCommand> watch;
+  std::vector<double> seen;
+  watch->SetClientData(&seen);
+  watch->SetCallback(
+    [](vtkObject* caller, unsigned long, void* seen, void*)
+    {
+      auto* algorithm = static_cast<vtkAlgorithm*>(caller);
+      static_cast<std::vector<double>*>(seen)->push_back(algorithm->GetProgress());
+    });
+  vtkNew<vtkImageZFPCompress> compress;
+  compress->AddObserver(vtkCommand::ProgressEvent, watch);
+  compress->SetInputData(FloatImage({ 301, 299, 41 }));
+  compress->Update();
+  EXPECT(seen.size() > 3 && std::is_sorted(seen.begin(), seen.end()), seen.size() << " events");
+
+  watch->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
+    { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
+  compress->SetRate(4.0);
+  compress->Update();
+  EXPECT(!vtkCompressedVolume::IsCompressed(compress->GetOutput()), "aborted");
+}
+}
+
+int main()
+{
+  TestRatesShapesThreads();
+  TestSteps();
+  TestTypes();
+  TestComponentsAndChoice();
+  TestOutput();
+  TestErrors();
+  TestPipeline();
+  TestProgressAndAbort();
+  return test::Result();
+}
