@@ -7,5 +7,6 @@ cd "$(dirname "$0")/.."
 .ci/setup-wheel
 scan=$(.venv/bin/python -m progiso data ct-cranium)
 picture=$PWD/skull.png
-.venv/bin/python -m progiso render "$scan" --isovalue 226 --rate 8 --size 1280x720 --output "$picture"
+# seen from the front left
+.venv/bin/python -m progiso render "$scan" --isovalue 226 --rate 8 --size 1280x720 --view 0.5,1,0.15 --output "$picture"
 echo "$picture"
