@@ -9,18 +9,49 @@ uvec2 BlockStart(uint block)
   return uvec2((high << 27) | (low >> 5), low & 31u);
 }
 
-// 32 bits of the payload from bit `bit` after `start`; zeros beyond the end.
-uint PeekBits(uvec2 start, uint bit)
+// A word of the payload; zeros beyond the end.
+uint PayloadWord(uint word)
 {
-  uint position = start.y + bit;
-  uint word = start.x + (position >> 5);
-  uint shift = position & 31u;
-  uint last = scene.Payload.y - 1u;
-  uint low = word <= last ? payload[word] : 0u;
-  if (shift == 0u)
+  return word < scene.Payload.y ? payload[word] : 0u;
+}
+
+// A cursor over a block's bits that holds the two words around it.
+struct BitCursor
+{
+  uint Low, High;
+  uint Word;  // index of Low
+  uint Shift; // bits of Low that are behind, 0 … 31
+};
+
+BitCursor OpenBlock(uint block)
+{
+  uvec2 start = BlockStart(block);
+  return BitCursor(PayloadWord(start.x), PayloadWord(start.x + 1u), start.x, start.y);
+}
+
+// The next 32 bits.
+uint NextBits(BitCursor bits)
+{
+  return (bits.Low >> bits.Shift) | ((bits.High << 1) << (31u - bits.Shift));
+}
+
+// Moves on by n <= 32 bits.
+void SkipBits(inout BitCursor bits, uint n)
+{
+  bits.Shift += n;
+  if (bits.Shift >= 32u)
   {
-    return low;
+    bits.Shift -= 32u;
+    bits.Low = bits.High;
+    ++bits.Word;
+    bits.High = PayloadWord(bits.Word + 1u);
   }
-  uint high = word < last ? payload[word + 1u] : 0u;
-  return (low >> shift) | (high << (32u - shift));
+}
+
+// Takes n <= 32 bits.
+uint TakeBits(inout BitCursor bits, uint n)
+{
+  uint value = n == 0u ? 0u : NextBits(bits) & (0xFFFFFFFFu >> (32u - n));
+  SkipBits(bits, n);
+  return value;
 }

@@ -76,16 +76,13 @@ void FindActiveCells()
 // Cell of the block in which the ray is at parameter t: every plane with a smaller or equal one is crossed.
 ivec3 CellAt(Ray ray, ivec3 block, double t)
 {
-  ivec3 cell = EntryPlanes(ray, block, 4) - (1 - ray.Step) / 2;
-  for (int axis = 0; axis < 3; ++axis)
+  ivec3 entry = EntryPlanes(ray, block, 4);
+  ivec3 crossed = ivec3(0);
+  for (int i = 1; i < 4; ++i)
   {
-    int exitSide = (1 + ray.Step[axis]) / 2;
-    for (int i = 0; i < 3 && PlaneT(ray, axis, cell[axis] + exitSide) <= t; ++i)
-    {
-      cell[axis] += ray.Step[axis];
-    }
+    crossed += ivec3(lessThanEqual(PlanesT(ray, entry + i * ray.Step), dvec3(t)));
   }
-  return cell;
+  return entry - (1 - ray.Step) / 2 + crossed * ray.Step;
 }
 
 // Coordinates in the cell's unit cube at parameter t; exact on the faces that the ray is crossing.
@@ -111,19 +108,35 @@ bool IntersectCell(Ray ray, ivec3 cell, uint corner, double t0, double t1, dvec3
   return s >= 0.0;
 }
 
-// First hit of the ray in the block; false if there is none.
+bool Active(uvec3 local)
+{
+  uint bit = local.x + 4u * local.y + 16u * local.z;
+  return (activeCells[bit >> 5] & (1u << (bit & 31u))) != 0u;
+}
+
+// First hit of the ray in the block; false if there is none. The walk to the next active cell is a loop
+// of its own, so that the lanes of a group meet again for the costly part.
 bool IntersectBlock(Ray ray, ivec3 block, double t0, out double t)
 {
   double end = BlockExit(ray, block);
   ivec3 cell = CellAt(ray, block, t0);
-  for (int i = 0; i < 16; ++i) // a ray crosses at most 10 cells of 4^3
+  for (int tested = 0; tested < 16; ++tested) // a ray crosses at most 10 cells of 4^3
   {
-    uvec3 local = uvec3(cell - 4 * block) & 3u;
     dvec3 exits = PlanesT(ray, ExitPlanes(ray, cell, 1));
     double t1 = min(SmallestOf(exits), end);
-    uint bit = local.x + 4u * local.y + 16u * local.z;
-    if ((activeCells[bit >> 5] & (1u << (bit & 31u))) != 0u &&
-      IntersectCell(ray, cell, local.x + 5u * local.y + 25u * local.z, t0, t1, exits, t))
+    for (int passed = 0; passed < 16 && t1 < end && !Active(uvec3(cell) & 3u); ++passed)
+    {
+      cell += ivec3(lessThanEqual(exits, dvec3(t1))) * ray.Step;
+      t0 = t1;
+      exits = PlanesT(ray, ExitPlanes(ray, cell, 1));
+      t1 = min(SmallestOf(exits), end);
+    }
+    uvec3 local = uvec3(cell) & 3u;
+    if (!Active(local))
+    {
+      return false;
+    }
+    if (IntersectCell(ray, cell, local.x + 5u * local.y + 25u * local.z, t0, t1, exits, t))
     {
       return true;
     }

@@ -21,58 +21,57 @@ const uint ZFP_ORDER[64] = uint[64](0u, 1u, 4u, 16u, 20u, 17u, 5u, 2u, 8u, 32u, 
   29u, 53u, 11u, 35u, 44u, 14u, 50u, 56u, 42u, 27u, 39u, 45u, 30u, 54u, 57u, 60u, 51u, 15u, 43u, 46u,
   58u, 61u, 55u, 31u, 62u, 59u, 47u, 63u);
 
-// Adds bit k to every coefficient whose bit is set in `mask`, from coefficient `first` on.
-void DepositPlane(uint mask, uint first, uint k, uint lane)
+// Length of the run of zeros at the cursor, up to and without the next one; at most `limit` <= 63 bits
+// are looked at, and what was looked at is skipped.
+uint TakeZeros(inout BitCursor bits, inout uint budget, uint limit)
 {
-  while (mask != 0u)
+  uint run = 0u;
+  while (limit > 0u)
   {
-    uint i = uint(findLSB(mask));
-    mask &= mask - 1u;
-    zfpColumns[ColumnIndex(ZFP_ORDER[first + i], lane)] |= 1u << k;
+    uint window = NextBits(bits);
+    uint zeros = window == 0u ? 32u : uint(findLSB(window));
+    bool found = zeros < limit && zeros < 32u;
+    zeros = min(zeros, limit);
+    uint used = zeros + (found ? 1u : 0u);
+    SkipBits(bits, used);
+    budget -= used;
+    run += zeros;
+    limit = found ? 0u : limit - zeros;
+  }
+  return run;
+}
+
+// Adds bit k to the coefficients, from `first` on, whose bit is set in `plane`.
+void DepositPlane(uint plane, uint first, uint k, uint lane)
+{
+  for (; plane != 0u; plane &= plane - 1u)
+  {
+    uint i = first + uint(findLSB(plane));
+    zfpColumns[ColumnIndex(ZFP_ORDER[i], lane)] |= 1u << k;
   }
 }
 
 // Embedded coding: bit planes from the most significant one, each a verbatim part of n bits and a
-// run-length coded remainder, until the block's budget of `bits` is spent.
-void DecodePlanes(uvec2 start, uint at, uint bits, uint lane)
+// run-length coded remainder, until the block's budget of bits is spent.
+void DecodePlanes(inout BitCursor bits, uint budget, uint lane)
 {
   uint n = 0u;
-  for (uint k = 32u; k-- > 0u && bits > 0u;)
+  for (uint k = 32u; k-- > 0u && budget > 0u;)
   {
-    uint m = min(n, bits);
-    bits -= m;
-    uint low = m == 0u ? 0u : PeekBits(start, at) & (0xFFFFFFFFu >> (32u - min(m, 32u)));
-    uint high = m <= 32u ? 0u : PeekBits(start, at + 32u) & (0xFFFFFFFFu >> (64u - m));
-    at += m;
-    while (bits > 0u && n < 64u)
+    uint m = min(n, budget);
+    budget -= m;
+    uint low = TakeBits(bits, min(m, 32u));
+    uint high = m > 32u ? TakeBits(bits, m - 32u) : 0u;
+    while (budget > 0u && n < 64u)
     {
-      --bits;
-      if ((PeekBits(start, at++) & 1u) == 0u)
+      --budget;
+      if (TakeBits(bits, 1u) == 0u)
       {
         break; // no further one in this plane
       }
-      // skip zeros up to the next one; the last coefficient's one is implied
-      uint limit = min(bits, 63u - n);
-      bool found = false;
-      while (limit > 0u && !found)
-      {
-        uint window = PeekBits(start, at);
-        uint zeros = min(window == 0u ? 32u : uint(findLSB(window)), limit);
-        found = zeros < limit && zeros < 32u;
-        uint used = zeros + (found ? 1u : 0u);
-        n += zeros;
-        at += used;
-        bits -= used;
-        limit -= used;
-      }
-      if (n < 32u)
-      {
-        low |= 1u << n;
-      }
-      else
-      {
-        high |= 1u << (n - 32u);
-      }
+      n += TakeZeros(bits, budget, min(budget, 63u - n)); // the last coefficient's one is implied
+      low |= n < 32u ? 1u << n : 0u;
+      high |= n < 32u ? 0u : 1u << (n - 32u);
       ++n;
     }
     DepositPlane(low, 0u, k, lane);
@@ -139,15 +138,13 @@ void DecodeBlock(uint block, uint lane)
   {
     zfpColumns[ColumnIndex(i, lane)] = 0u;
   }
-  uvec2 start = BlockStart(block);
-  uint header = PeekBits(start, 0u);
-  if ((header & 1u) == 0u)
+  BitCursor bits = OpenBlock(block);
+  if (TakeBits(bits, 1u) == 0u)
   {
     return; // a block of zeros
   }
-  int exponent = int((header >> 1) & 0xFFu) - ZFP_EXPONENT_BIAS - 30;
-  uint headerBits = 1u + ZFP_EXPONENT_BITS;
-  DecodePlanes(start, headerBits, scene.Payload.x - headerBits, lane);
+  int exponent = int(TakeBits(bits, ZFP_EXPONENT_BITS)) - ZFP_EXPONENT_BIAS - 30;
+  DecodePlanes(bits, scene.Payload.x - 1u - ZFP_EXPONENT_BITS, lane);
   for (uint i = 0u; i < 64u; ++i)
   {
     uint at = ColumnIndex(i, lane);
