@@ -46,8 +46,9 @@ std::string GetNumericArray(
   if (!array || floating == integers || array->GetNumberOfValues() != count)
   {
     std::ostringstream message;
-    message << "its field data array " << name << (array ? " does not hold " : " is missing: expected ")
-            << count << (integers ? " integer" : " floating point") << (count > 1 ? " values" : " value");
+    message << "its field data array " << name
+            << (array ? " does not hold " : " is missing: expected ") << count
+            << (integers ? " integer" : " floating point") << (count > 1 ? " values" : " value");
     return message.str();
   }
   return {};
@@ -256,8 +257,9 @@ std::string vtkCompressedVolume::ReadNumbers(vtkImageData* image)
     this->Range[i] = range->GetVariantValue(i).ToDouble();
   }
   const bool finite = std::isfinite(this->Range[0]) && std::isfinite(this->Range[1]);
-  return finite && this->Range[0] <= this->Range[1] ? std::string()
-                                                    : std::string(RangeName) + " is not a finite range";
+  return finite && this->Range[0] <= this->Range[1]
+    ? std::string()
+    : std::string(RangeName) + " is not a finite range";
 }
 
 //------------------------------------------------------------------------------
@@ -274,8 +276,8 @@ std::string vtkCompressedVolume::CheckGeometry(vtkImageData* image) const
   std::ostringstream message;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const vtkTypeInt64 expected = static_cast<vtkTypeInt64>(extent[2 * axis + 1]) -
-      extent[2 * axis] + (cells ? 0 : 1);
+    const vtkTypeInt64 expected =
+      static_cast<vtkTypeInt64>(extent[2 * axis + 1]) - extent[2 * axis] + (cells ? 0 : 1);
     if (dims[axis] != expected)
     {
       message << DimensionsName << " is " << dims[axis] << " along axis " << axis
@@ -317,7 +319,8 @@ std::string vtkCompressedVolume::ReadStreamAndName(vtkImageData* image)
   {
     std::ostringstream message;
     message << StreamName << " is truncated: it has " << stream->GetNumberOfValues() << " bytes, ";
-    needed < 0 ? message << "its dimensions need more than 2^60" : message << needed << " are needed";
+    needed < 0 ? message << "its dimensions need more than 2^60"
+               : message << needed << " are needed";
     return message.str();
   }
   this->Stream = stream;
@@ -403,7 +406,8 @@ void vtkCompressedVolume::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ScalarType: " << this->ScalarType << "\n";
   os << indent << "ArrayName: " << this->ArrayName << "\n";
   os << indent << "Component: " << this->Component << "\n";
-  os << indent << "Association: " << (this->Association == CellData ? "cell" : "point") << " data\n";
+  os << indent << "Association: " << (this->Association == CellData ? "cell" : "point")
+     << " data\n";
   os << indent << "Stream: ";
   this->Stream ? os << this->Stream->GetNumberOfValues() << " bytes\n" : os << "(none)\n";
   os << indent << "ErrorMessage: " << this->ErrorMessage << "\n";

@@ -8,22 +8,20 @@
  * direction matrix), without the compressed array, and with these arrays in its field data
  * (version 1 of the format):
  *
- * | array                  | type               | content                                           |
- * | ---------------------- | ------------------ | ------------------------------------------------- |
- * | ProgIso.ZFP.Version    | int                | 1                                                 |
- * | ProgIso.ZFP.Stream     | unsigned char      | fixed-rate zfp stream, see below                  |
- * | ProgIso.ZFP.BlockBits  | int                | bits per block of 4x4x4 samples, 9..2048          |
- * | ProgIso.ZFP.Dimensions | 64-bit integer [3] | samples per axis (points, or cells for cell data) |
- * | ProgIso.ZFP.Range      | double [2]         | smallest and largest sample, as float32           |
- * | ProgIso.ZFP.ScalarType | int                | VTK type of the original array                    |
- * | ProgIso.ZFP.ArrayName  | string             | name of the original array                        |
- * | ProgIso.ZFP.Component  | int                | component of the original array                   |
- * | ProgIso.ZFP.Association| int                | 0 point data, 1 cell data                         |
+ * - ProgIso.ZFP.Version (int): 1
+ * - ProgIso.ZFP.Stream (unsigned char): fixed-rate zfp stream, see below
+ * - ProgIso.ZFP.BlockBits (int): bits per block of 4x4x4 samples, 9..2048
+ * - ProgIso.ZFP.Dimensions (3 64-bit integers): samples per axis (points, or cells for cell data)
+ * - ProgIso.ZFP.Range (2 doubles): smallest and largest sample, as float32
+ * - ProgIso.ZFP.ScalarType (int): VTK type of the original array
+ * - ProgIso.ZFP.ArrayName (string): name of the original array
+ * - ProgIso.ZFP.Component (int): component of the original array
+ * - ProgIso.ZFP.Association (int): 0 point data, 1 cell data
  *
  * The stream is zfp's (codec 5) for a 3-D float32 array, without zfp's header: blocks in x-fastest
  * order, block i at bit i*BlockBits (bits count from the least significant one of 64-bit
- * little-endian words), padded with zero bits to a multiple of 8 bytes. Being ordinary field data it
- * passes through every VTK reader, writer and pipeline.
+ * little-endian words), padded with zero bits to a multiple of 8 bytes. Being ordinary field data
+ * it passes through every VTK reader, writer and pipeline.
  *
  * Read() checks everything before anyone trusts it: presence, types, sizes, 64-bit overflow, the
  * length of the stream and that the range is finite. What it accepts can be decoded without reading
@@ -87,15 +85,15 @@ public:
   static vtkTypeInt64 StreamBytesFor(const int dims[3], int blockBits);
 
   /**
-   * Take metadata and stream (by reference) from an image. Returns false, leaving this object empty,
-   * when something is missing, inconsistent with the image, truncated or out of range;
+   * Take metadata and stream (by reference) from an image. Returns false, leaving this object
+   * empty, when something is missing, inconsistent with the image, truncated or out of range;
    * GetErrorMessage() then holds one sentence that names it.
    */
   bool Read(vtkImageData* image);
 
   /**
-   * Store metadata and stream (by reference) in the field data of an image, replacing what is there.
-   * The inverse of Read(); used by what makes streams.
+   * Store metadata and stream (by reference) in the field data of an image, replacing what is
+   * there. The inverse of Read(); used by what makes streams.
    */
   void Write(vtkImageData* image) const;
 
@@ -120,7 +118,8 @@ public:
 
   ///@{
   /**
-   * Samples per axis: the image's point dimensions, or its cell dimensions for cell data. At least 2.
+   * Samples per axis: the image's point dimensions, or its cell dimensions for cell data. At
+   * least 2.
    */
   vtkGetVector3Macro(Dimensions, int);
   vtkSetVector3Macro(Dimensions, int);
@@ -157,8 +156,8 @@ public:
 
   ///@{
   /**
-   * PointData (0) or CellData (1): where the samples lie, on the image's points or in the centres of
-   * its cells (half a cell further in index space).
+   * PointData (0) or CellData (1): where the samples lie, on the image's points or in the centres
+   * of its cells (half a cell further in index space).
    */
   vtkGetMacro(Association, int);
   vtkSetMacro(Association, int);

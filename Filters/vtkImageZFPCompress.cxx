@@ -124,7 +124,8 @@ vtkDataArray* vtkImageZFPCompress::FindArray(
   vtkInformation* choice = this->GetInputArrayInformation(0);
   const char* chosen =
     choice->Has(vtkDataObject::FIELD_NAME()) ? choice->Get(vtkDataObject::FIELD_NAME()) : nullptr;
-  chosen = chosen && *chosen ? chosen : nullptr; // ParaView's property for "not chosen yet" is an empty name
+  chosen = chosen && *chosen ? chosen
+                             : nullptr; // ParaView's property for "not chosen yet" is an empty name
   vtkDataArray* array = this->GetInputArrayToProcess(0, inputVector);
   if (!array && !chosen)
   {
@@ -140,7 +141,8 @@ vtkDataArray* vtkImageZFPCompress::FindArray(
     }
     else
     {
-      message << "There is no " << (chosen ? "point or cell array '" + std::string(chosen) + "'" : "array")
+      message << "There is no "
+              << (chosen ? "point or cell array '" + std::string(chosen) + "'" : "array")
               << " to compress; the input's arrays: " << ArrayNames(input) << ".";
     }
     vtkErrorMacro(<< message.str());
@@ -222,6 +224,16 @@ bool vtkImageZFPCompress::Compress(
     vtkErrorMacro("Array '" << name << "' has " << summary.NaNs << " NaN and " << summary.Infinities
                             << " infinite values (as float32), which ZFP cannot compress: replace "
                                "them first.");
+    return false;
+  }
+  // zeros in place of tiny values are below float32's precision of the largest value, or else an
+  // error
+  const float visible = vtkZFPBlocks::TinyMagnitude() * 16777216.0f; // 2^24
+  if (summary.TinyBlocks > 0 && summary.Magnitude() < visible)
+  {
+    vtkErrorMacro("Array '" << name << "' has values too small for ZFP: the largest is "
+                            << summary.Magnitude() << ", and in " << summary.TinyBlocks
+                            << " blocks of 4x4x4 all are below 3e-30. Scale the values up first.");
     return false;
   }
 

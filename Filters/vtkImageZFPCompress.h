@@ -4,8 +4,8 @@
  * @class   vtkImageZFPCompress
  * @brief   compress one array of an image with fixed-rate ZFP
  *
- * Takes one component of a point or cell array of a vtkImageData of any scalar type, as float32, and
- * produces a compressed volume (see vtkCompressedVolume): a vtkImageData with the same extent,
+ * Takes one component of a point or cell array of a vtkImageData of any scalar type, as float32,
+ * and produces a compressed volume (see vtkCompressedVolume): a vtkImageData with the same extent,
  * spacing, origin and direction matrix, no point or cell arrays, the input's field data, and the
  * compressed stream with its metadata in the field data.
  *
@@ -13,13 +13,15 @@
  * the first point array, else the active cell scalars, else the first cell array.
  *
  * Blocks are encoded in parallel with OpenMP; the stream is bit-identical to what libzfp's
- * zfp_compress() writes, whatever the number of threads. Values are converted block by block, so that
- * no second copy of the volume is made. Progress events are sent between layers of blocks, where an
- * abort is also noticed (the output then has no stream).
+ * zfp_compress() writes, whatever the number of threads. (Except for blocks of 4x4x4 samples that
+ * are all below 2^-98, about 3e-30: zfp's encoder overflows there, this filter stores zero.) Values
+ * are converted block by block, so that no second copy of the volume is made. Progress events are
+ * sent between layers of blocks, where an abort is also noticed (the output then has no stream).
  *
  * Errors, each one message and an output without stream: no such array or component; an image with
- * fewer than 2 samples along an axis; a rate outside (0, 32]; NaN or infinite samples (as float32; the
- * message counts them).
+ * fewer than 2 samples along an axis; a rate outside (0, 32]; NaN or infinite samples (as float32;
+ * the message counts them); an array so small (below 2^-74, about 5e-23) that zeros for values
+ * below 2^-98 would show.
  *
  * The filter asks for the whole extent of its input.
  *
@@ -42,8 +44,8 @@ public:
 
   ///@{
   /**
-   * Rate asked for, in bits per sample, in (0, 32]. Default 8. zfp rounds it to whole bits per block
-   * of 64 samples, at least 9: see GetActualRate().
+   * Rate asked for, in bits per sample, in (0, 32]. Default 8. zfp rounds it to whole bits per
+   * block of 64 samples, at least 9: see GetActualRate().
    */
   vtkSetMacro(Rate, double);
   vtkGetMacro(Rate, double);
@@ -75,18 +77,19 @@ protected:
   vtkImageZFPCompress() = default;
   ~vtkImageZFPCompress() override = default;
 
-  int RequestInformation(
-    vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector) override;
-  int RequestUpdateExtent(
-    vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector) override;
-  int RequestData(
-    vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestData(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
 
 private:
   vtkImageZFPCompress(const vtkImageZFPCompress&) = delete;
   void operator=(const vtkImageZFPCompress&) = delete;
 
-  vtkDataArray* FindArray(vtkInformationVector** inputVector, vtkImageData* input, int& association);
+  vtkDataArray* FindArray(
+    vtkInformationVector** inputVector, vtkImageData* input, int& association);
   bool Compress(vtkImageData* input, vtkDataArray* array, int association, vtkImageData* output);
 
   double Rate = 8.0;

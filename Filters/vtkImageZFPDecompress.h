@@ -5,12 +5,12 @@
  * @brief   decode a compressed volume back to float32 samples
  *
  * The inverse of vtkImageZFPCompress: the output is the vtkImageData with the input's geometry and
- * field data (less the stream and its metadata) and one float32 array with one component, the active
- * scalars, under the original name and association (point or cell data). Blocks are decoded in
- * parallel with OpenMP; the values are those of libzfp's zfp_decompress(), bit for bit.
+ * field data (less the stream and its metadata) and one float32 array with one component, the
+ * active scalars, under the original name and association (point or cell data). Blocks are decoded
+ * in parallel with OpenMP; the values are those of libzfp's zfp_decompress(), bit for bit.
  *
- * Errors, one message and an output without array: an input that is not a compressed volume, or whose
- * metadata or stream is inconsistent (see vtkCompressedVolume::Read).
+ * Errors, one message and an output without array: an input that is not a compressed volume, or
+ * whose metadata or stream is inconsistent (see vtkCompressedVolume::Read).
  *
  * @sa vtkImageZFPCompress vtkCompressedVolume vtkZFPReader
  */
@@ -39,12 +39,12 @@ protected:
   vtkImageZFPDecompress() = default;
   ~vtkImageZFPDecompress() override = default;
 
-  int RequestInformation(
-    vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector) override;
-  int RequestUpdateExtent(
-    vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector) override;
-  int RequestData(
-    vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestData(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
 
 private:
   vtkImageZFPDecompress(const vtkImageZFPDecompress&) = delete;

@@ -47,6 +47,13 @@ void vtkZFPBlocks::Summary::Add(const Summary& other)
   this->Maximum = std::max(this->Maximum, other.Maximum);
   this->NaNs += other.NaNs;
   this->Infinities += other.Infinities;
+  this->TinyBlocks += other.TinyBlocks;
+}
+
+//------------------------------------------------------------------------------
+float vtkZFPBlocks::Summary::Magnitude() const
+{
+  return std::max(std::abs(this->Minimum), std::abs(this->Maximum));
 }
 
 //------------------------------------------------------------------------------
@@ -115,8 +122,8 @@ vtkTypeInt64 vtkZFPBlocks::SampleIndex(const Block& block) const
 }
 
 //------------------------------------------------------------------------------
-// Calls body(zfp stream positioned at the block, block, summary of the thread) for all blocks of the
-// layers [first, last), in parallel over groups of blocks that share no word of the stream.
+// Calls body(zfp stream positioned at the block, block, summary of the thread) for all blocks of
+// the layers [first, last), in parallel over groups of blocks that share no word of the stream.
 template <typename Body>
 void vtkZFPBlocks::ForEachBlock(
   vtkTypeInt64 first, vtkTypeInt64 last, Summary& summary, bool write, Body body)
@@ -151,6 +158,7 @@ void vtkZFPBlocks::ForEachBlock(
     }
     mine.NaNs -= before.NaNs;
     mine.Infinities -= before.Infinities;
+    mine.TinyBlocks -= before.TinyBlocks;
 #pragma omp critical(vtkZFPBlocksSummary)
     summary.Add(mine);
   }
@@ -171,7 +179,14 @@ struct vtkZFPBlocks::Encoder
   void operator()(zfp_stream* stream, const Block& block, Summary& summary) const
   {
     float samples[64];
-    this->Gather(block, samples, summary);
+    Summary found;
+    this->Gather(block, samples, found);
+    if (found.IsFinite() && found.Magnitude() < TinyMagnitude() && found.Magnitude() > 0.0f)
+    {
+      std::fill_n(samples, 64, 0.0f);
+      found.TinyBlocks = 1;
+    }
+    summary.Add(found);
     if (!summary.IsFinite())
     {
       return;
@@ -187,7 +202,7 @@ struct vtkZFPBlocks::Encoder
     }
   }
 
-  void Gather(const Block& block, float samples[64], Summary& summary) const
+  void Gather(const Block& block, float samples[64], Summary& found) const
   {
     const vtkTypeInt64 origin = this->Blocks.SampleIndex(block);
     for (int z = 0; z < block.Size[2]; ++z)
@@ -199,7 +214,7 @@ struct vtkZFPBlocks::Encoder
         for (int x = 0; x < block.Size[0]; ++x)
         {
           const float value = static_cast<float>(this->Tuples[row + x][this->Component]);
-          summary.Add(value);
+          found.Add(value);
           samples[16 * z + 4 * y + x] = value;
         }
       }

@@ -5,12 +5,13 @@
  * @brief   encode and decode runs of blocks of a fixed-rate zfp stream in parallel (internal)
  *
  * Knows a stream of 4x4x4 blocks by its dimensions, bits per block and memory, and neither VTK's
- * pipeline nor files. Work is given in layers of blocks (all blocks with the same z), so that callers
- * can report progress in between.
+ * pipeline nor files. Work is given in layers of blocks (all blocks with the same z), so that
+ * callers can report progress in between.
  *
- * Why not zfp_compress() with zfp's OpenMP policy: that encodes into one buffer per thread, which one
- * thread concatenates, and it has no parallel decoder. 64 blocks always fill whole 64-bit words
- * (64*BlockBits bits), so threads that take blocks in groups of 64 write in place, and decode alike.
+ * Why not zfp_compress() with zfp's OpenMP policy: that encodes into one buffer per thread, which
+ * one thread concatenates, and it has no parallel decoder. 64 blocks always fill whole 64-bit words
+ * (64*BlockBits bits), so threads that take blocks in groups of 64 write in place, and decode
+ * alike.
  */
 #ifndef vtkZFPBlocks_h
 #define vtkZFPBlocks_h
@@ -33,8 +34,10 @@ public:
     float Maximum = -std::numeric_limits<float>::infinity();
     vtkTypeInt64 NaNs = 0;
     vtkTypeInt64 Infinities = 0;
+    vtkTypeInt64 TinyBlocks = 0; ///< blocks encoded as zero, see Encode()
 
     bool IsFinite() const { return this->NaNs == 0 && this->Infinities == 0; }
+    float Magnitude() const; ///< largest absolute value
     void Add(float value);
     void Add(const Summary& other);
   };
@@ -48,8 +51,8 @@ public:
   vtkTypeInt64 GetNumberOfLayers() const { return this->Blocks[2]; }
 
   /**
-   * Layers to work on between two progress events: about a hundredth of the volume, but enough blocks
-   * to keep the threads busy.
+   * Layers to work on between two progress events: about a hundredth of the volume, but enough
+   * blocks to keep the threads busy.
    */
   vtkTypeInt64 GetLayersPerStep() const;
 
@@ -57,9 +60,15 @@ public:
    * Encode layers [first, last) from one component of an array that holds dims[0]*dims[1]*dims[2]
    * tuples. Layers must be encoded in order, each once. As soon as a value that is not finite (as
    * float32) has been seen, here or in `summary`, values are counted but no longer encoded.
+   *
+   * Where all values of a block are smaller than TinyMagnitude(), zfp's encoder overflows (it
+   * scales by 2^(30-exponent) in float32) and yields arbitrary values of about that size. Such
+   * blocks are encoded as zero, and counted.
    */
   void Encode(
     vtkDataArray* array, int component, vtkTypeInt64 first, vtkTypeInt64 last, Summary& summary);
+
+  static float TinyMagnitude() { return 3.1554436e-30f; } // 2^-98
 
   /**
    * Decode layers [first, last) into an array of dims[0]*dims[1]*dims[2] floats.

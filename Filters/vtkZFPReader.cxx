@@ -149,8 +149,8 @@ std::string vtkZFPReader::FindLayout(
   if (hasHeader)
   {
     file.seekg(0);
-    const std::string error = ReadHeader(
-      file, layout.FileBytes, layout.Dimensions, layout.BlockBits, layout.HeaderBits);
+    const std::string error =
+      ReadHeader(file, layout.FileBytes, layout.Dimensions, layout.BlockBits, layout.HeaderBits);
     if (!error.empty())
     {
       return error;
@@ -223,8 +223,7 @@ int vtkZFPReader::RequestInformation(
   int extent[6] = { 0, -1, 0, -1, 0, -1 };
   this->ReportedError.clear();
   this->SetErrorCode(vtkErrorCode::NoError);
-  const std::string error =
-    FindLayout(this->FileName, this->DataDimensions, this->Rate, layout);
+  const std::string error = FindLayout(this->FileName, this->DataDimensions, this->Rate, layout);
   if (error.empty())
   {
     for (int axis = 0; axis < 3; ++axis)
@@ -282,7 +281,8 @@ std::string vtkZFPReader::Load(const Layout& layout, vtkImageData* output)
   }
   auto* const begin = reinterpret_cast<vtkTypeUInt64*>(bytes);
   DropBits(begin, words, shift);
-  stream->SetNumberOfValues(vtkCompressedVolume::StreamBytesFor(layout.Dimensions, layout.BlockBits));
+  stream->SetNumberOfValues(
+    vtkCompressedVolume::StreamBytesFor(layout.Dimensions, layout.BlockBits));
   if (const int used = layout.PayloadBits() % 64)
   {
     begin[layout.PayloadBits() / 64] &= (vtkTypeUInt64(1) << used) - 1;
@@ -310,9 +310,9 @@ std::string vtkZFPReader::Load(const Layout& layout, vtkImageData* output)
 }
 
 //------------------------------------------------------------------------------
-// zfp files hold no range of values: decode all blocks, keeping none. False when aborted or in error.
-bool vtkZFPReader::FindRange(
-  const Layout& layout, void* words, double range[2], std::string& error)
+// zfp files hold no range of values: decode all blocks, keeping none. False when aborted or in
+// error.
+bool vtkZFPReader::FindRange(const Layout& layout, void* words, double range[2], std::string& error)
 {
   vtkZFPBlocks blocks(layout.Dimensions, layout.BlockBits, words, 0);
   vtkZFPBlocks::Summary summary;

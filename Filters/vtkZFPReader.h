@@ -5,14 +5,14 @@
  * @brief   read a file of the zfp command line tool or zfpy as a compressed volume
  *
  * Reads fixed-rate streams of 3-D float32 arrays, with zfp's header (`zfp -h`, zfpy) or without
- * (give DataDimensions and Rate). The stream is taken over as it is, only realigned behind a header;
- * nothing is compressed again. As zfp files hold no value range, the blocks are decoded once to find
- * it, and the metadata's ScalarType is VTK_FLOAT.
+ * (give DataDimensions and Rate). The stream is taken over as it is, only realigned behind a
+ * header; nothing is compressed again. As zfp files hold no value range, the blocks are decoded
+ * once to find it, and the metadata's ScalarType is VTK_FLOAT.
  *
- * Errors, one message and an empty output: a file that cannot be read; another codec version, scalar
- * type, dimensionality or compression mode; fewer than 2 samples along an axis; a truncated stream;
- * without header, a file size that does not match dimensions and rate; samples that decode to
- * infinity (a damaged stream or the wrong dimensions).
+ * Errors, one message and an empty output: a file that cannot be read; another codec version,
+ * scalar type, dimensionality or compression mode; fewer than 2 samples along an axis; a truncated
+ * stream; without header, a file size that does not match dimensions and rate; samples that decode
+ * to infinity (a damaged stream or the wrong dimensions).
  *
  * zfp files hold no geometry: set DataSpacing and DataOrigin.
  *
@@ -88,10 +88,10 @@ protected:
   vtkZFPReader();
   ~vtkZFPReader() override;
 
-  int RequestInformation(
-    vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector) override;
-  int RequestData(
-    vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestData(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
 
 private:
   vtkZFPReader(const vtkZFPReader&) = delete;

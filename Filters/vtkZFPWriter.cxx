@@ -23,8 +23,8 @@ vtkStandardNewMacro(vtkZFPWriter);
 namespace
 {
 //------------------------------------------------------------------------------
-// zfp's header for a volume, in whole words; returns its length in bits, 0 when it has no room for the
-// dimensions.
+// zfp's header for a volume, in whole words; returns its length in bits, 0 when it has no room for
+// the dimensions.
 size_t MakeHeader(vtkCompressedVolume* volume, vtkTypeUInt64 words[3])
 {
   int dims[3];
@@ -54,7 +54,8 @@ void RemoveFile(const char* name)
 }
 
 //------------------------------------------------------------------------------
-// Writes bits to a file, a word at a time: first a header, then the stream right behind its last bit.
+// Writes bits to a file, a word at a time: first a header, then the stream right behind its last
+// bit.
 class BitWriter
 {
 public:

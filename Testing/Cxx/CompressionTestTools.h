@@ -45,7 +45,8 @@ inline int Failures = 0;
     if (!(condition))                                                                              \
     {                                                                                              \
       ++test::Failures;                                                                            \
-      std::cerr << __FILE__ << ":" << __LINE__ << ": " #condition ": " << description << std::endl; \
+      std::cerr << __FILE__ << ":" << __LINE__ << ": " #condition ": " << description              \
+                << std::endl;                                                                      \
     }                                                                                              \
   } while (false)
 
@@ -75,8 +76,7 @@ inline vtkSmartPointer<vtkImageData> Image(
 {
   auto image = vtkSmartPointer<vtkImageData>::New();
   const int more = cells ? 0 : -1;
-  image->SetExtent(
-    3, 3 + dims[0] + more, -2, -2 + dims[1] + more, 5, 5 + dims[2] + more);
+  image->SetExtent(3, 3 + dims[0] + more, -2, -2 + dims[1] + more, 5, 5 + dims[2] + more);
   image->SetSpacing(0.5, 2.0, 3.0);
   image->SetOrigin(1.0, -2.0, 3.0);
   const double direction[9] = { 0, -1, 0, 1, 0, 0, 0, 0, 1 };
@@ -137,7 +137,8 @@ struct Reference
 
   bool Equals(vtkUnsignedCharArray* stream) const
   {
-    return stream && stream->GetNumberOfValues() == static_cast<vtkIdType>(8 * this->Stream.size()) &&
+    return stream &&
+      stream->GetNumberOfValues() == static_cast<vtkIdType>(8 * this->Stream.size()) &&
       memcmp(stream->GetPointer(0), this->Stream.data(), 8 * this->Stream.size()) == 0;
   }
 };
@@ -149,8 +150,7 @@ public:
   explicit Errors(vtkAlgorithm* algorithm)
   {
     this->Observer->SetClientData(this);
-    this->Observer->SetCallback(
-      [](vtkObject*, unsigned long, void* self, void* text)
+    this->Observer->SetCallback([](vtkObject*, unsigned long, void* self, void* text)
       { static_cast<Errors*>(self)->Texts.emplace_back(static_cast<const char*>(text)); });
     algorithm->AddObserver("ErrorEvent", this->Observer);
     algorithm->GetExecutive()->AddObserver("ErrorEvent", this->Observer);
@@ -192,8 +192,7 @@ inline bool SameGeometry(vtkImageData* a, vtkImageData* b)
   bool same = std::equal(a->GetExtent(), a->GetExtent() + 6, b->GetExtent());
   for (int i = 0; i < 9; ++i)
   {
-    same = same &&
-      a->GetDirectionMatrix()->GetData()[i] == b->GetDirectionMatrix()->GetData()[i] &&
+    same = same && a->GetDirectionMatrix()->GetData()[i] == b->GetDirectionMatrix()->GetData()[i] &&
       a->GetSpacing()[i % 3] == b->GetSpacing()[i % 3] &&
       a->GetOrigin()[i % 3] == b->GetOrigin()[i % 3];
   }

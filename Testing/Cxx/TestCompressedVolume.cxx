@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// vtkCompressedVolume: reads what was written, and rejects with its name whatever is missing, of the
-// wrong type, inconsistent, truncated or too large.
+// vtkCompressedVolume: reads what was written, and rejects with its name whatever is missing, of
+// the wrong type, inconsistent, truncated or too large.
 #include "CompressionTestTools.h"
 
 #include <vtkDoubleArray.h>
@@ -79,8 +79,8 @@ vtkSmartPointer<ArrayT> Values(std::initializer_list<typename ArrayT::ValueType>
 //------------------------------------------------------------------------------
 void TestRejects()
 {
-  for (const char* name : { "Version", "BlockBits", "Dimensions", "Range", "ScalarType", "ArrayName",
-         "Component", "Association", "Stream" })
+  for (const char* name : { "Version", "BlockBits", "Dimensions", "Range", "ScalarType",
+         "ArrayName", "Component", "Association", "Stream" })
   {
     EXPECT(!ReadWith(name, nullptr, name), name << " missing");
     EXPECT(!ReadWith(name, Values<vtkFloatArray>({ 1.f }), name), name << " of wrong type");
@@ -89,8 +89,10 @@ void TestRejects()
   EXPECT(!ReadWith("Version", Values<vtkIntArray>({ 2 }), "version 2"), "version");
   EXPECT(!ReadWith("BlockBits", Values<vtkIntArray>({ 8 }), "BlockBits is 8"), "too few");
   EXPECT(!ReadWith("BlockBits", Values<vtkIntArray>({ 2049 }), "BlockBits is 2049"), "too many");
-  EXPECT(!ReadWith("BlockBits", Values<vtkTypeInt64Array>({ beyond + 512 }), "BlockBits"), "64 bits");
-  EXPECT(!ReadWith("BlockBits", Values<vtkIntArray>({ 513 }), "truncated"), "longer than the stream");
+  EXPECT(
+    !ReadWith("BlockBits", Values<vtkTypeInt64Array>({ beyond + 512 }), "BlockBits"), "64 bits");
+  EXPECT(
+    !ReadWith("BlockBits", Values<vtkIntArray>({ 513 }), "truncated"), "longer than the stream");
   EXPECT(!ReadWith("Dimensions", Values<vtkIntArray>({ 9, 4 }), "3 integer values"), "two");
   EXPECT(!ReadWith("Dimensions", Values<vtkIntArray>({ 9, 4, 7 }), "axis 2"), "not the image's");
   EXPECT(!ReadWith("Dimensions", Values<vtkTypeInt64Array>({ beyond, 4, 6 }), "axis 0"), "64 bits");
@@ -118,7 +120,8 @@ void TestHugeExtent()
   image->GetFieldData()->AddArray(dims);
   vtkNew<vtkCompressedVolume> volume;
   EXPECT(!volume->Read(image), "huge");
-  EXPECT(volume->GetErrorMessage().find("truncated") != std::string::npos, volume->GetErrorMessage());
+  EXPECT(
+    volume->GetErrorMessage().find("truncated") != std::string::npos, volume->GetErrorMessage());
 }
 
 //------------------------------------------------------------------------------

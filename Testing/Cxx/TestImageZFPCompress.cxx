@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// vtkImageZFPCompress against one call of libzfp: rates, shapes, types, components, threads; and the
-// pipeline around it.
+// vtkImageZFPCompress against one call of libzfp: rates, shapes, types, components, threads; and
+// the pipeline around it.
 #include "CompressionTestTools.h"
 
 #include <vtkBitArray.h>
@@ -163,9 +163,7 @@ void TestErrors()
   ExpectError("Component is 1", image, [](vtkImageZFPCompress* c) { c->SetComponent(1); });
   ExpectError("array 'pressure' to compress; the input's arrays: density", image,
     [](vtkImageZFPCompress* c)
-    {
-      c->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "pressure");
-    });
+    { c->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "pressure"); });
   ExpectError("7 x 1 x 5 samples", FloatImage({ 7, 1, 5 }), nothing);
   ExpectError("1 x 7 x 5 samples", FloatImage({ 1, 7, 5 }, true), nothing);
   vtkNew<vtkImageData> empty;
@@ -180,6 +178,29 @@ void TestErrors()
   huge->SetNumberOfValues(8);
   huge->FillValue(1e300); // infinite as float32
   ExpectError("0 NaN and 8 infinite", Image({ 2, 2, 2 }, huge), nothing);
+}
+
+//------------------------------------------------------------------------------
+// zfp's encoder overflows for blocks below 2^-98: they become zero, unless that would be seen.
+void TestTinyValues()
+{
+  const Dims dims = { 8, 4, 4 }; // two blocks
+  std::vector<float> values(Product(dims));
+  for (vtkIdType i = 0; i < Product(dims); ++i)
+  {
+    values[i] = i % 8 < 4 ? 1.0f : 1e-31f;
+  }
+  std::vector<float> zeroed = values;
+  std::replace(zeroed.begin(), zeroed.end(), 1e-31f, 0.0f);
+  const auto volume = Read(Compress(Image(dims, FloatArray(values))));
+  EXPECT(Reference(dims, zeroed, 8.0).Equals(volume->GetStream()), "tiny block");
+  EXPECT(volume->GetRange()[0] == 1e-31f, "the range is the original's");
+
+  std::replace(values.begin(), values.end(), 1.0f, 1e-25f);
+  ExpectError("too small for ZFP", Image(dims, FloatArray(values)), [](vtkImageZFPCompress*) {});
+  std::replace(values.begin(), values.end(), 1e-31f, 4e-30f); // just large enough for zfp
+  const auto small = Read(Compress(Image(dims, FloatArray(values))));
+  EXPECT(Reference(dims, values, 8.0).Equals(small->GetStream()), "small block");
 }
 
 //------------------------------------------------------------------------------
@@ -241,6 +262,7 @@ int main()
   TestComponentsAndChoice();
   TestOutput();
   TestErrors();
+  TestTinyValues();
   TestPipeline();
   TestProgressAndAbort();
   return test::Result();

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// vtkZFPReader on files as libzfp makes them, in every mode, with and without header, whole, cut and
-// damaged.
+// vtkZFPReader on files as libzfp makes them, in every mode, with and without header, whole, cut
+// and damaged.
 #include "CompressionTestTools.h"
 
 #include <vtkInformation.h>
@@ -34,9 +34,8 @@ std::string MakeFile(bool header, zfp_type type, int dimensions,
   std::vector<vtkTypeUInt64> words(values.size() + 4096);
   bitstream* bits = stream_open(words.data(), 8 * words.size());
   zfp_stream* zfp = zfp_stream_open(bits);
-  zfp_field* field = dimensions == 3
-    ? zfp_field_3d(values.data(), type, dims[0], dims[1], dims[2])
-    : zfp_field_2d(values.data(), type, dims[0], dims[1]);
+  zfp_field* field = dimensions == 3 ? zfp_field_3d(values.data(), type, dims[0], dims[1], dims[2])
+                                     : zfp_field_2d(values.data(), type, dims[0], dims[1]);
   setMode(zfp);
   if (header)
   {
@@ -114,11 +113,11 @@ void TestErrors()
   const auto expert = [](zfp_stream* zfp) { zfp_stream_set_params(zfp, 100, 600, 32, -1074); };
   ExpectError(MakeFile(true, zfp_type_float, 3, expert), "expert mode");
   ExpectError(MakeFile(true, zfp_type_float, 3, zfp_stream_set_reversible), "reversible mode");
-  ExpectError(MakeFile(true, zfp_type_float, 3,
-                [](zfp_stream* zfp) { zfp_stream_set_accuracy(zfp, 0.1); }),
+  ExpectError(
+    MakeFile(true, zfp_type_float, 3, [](zfp_stream* zfp) { zfp_stream_set_accuracy(zfp, 0.1); }),
     "fixed accuracy mode");
-  ExpectError(MakeFile(true, zfp_type_float, 3,
-                [](zfp_stream* zfp) { zfp_stream_set_precision(zfp, 12); }),
+  ExpectError(
+    MakeFile(true, zfp_type_float, 3, [](zfp_stream* zfp) { zfp_stream_set_precision(zfp, 12); }),
     "fixed precision mode");
   ExpectError(MakeFile(true, zfp_type_double, 3, rate8), "3-D double");
   ExpectError(MakeFile(true, zfp_type_float, 2, rate8), "2-D float");
