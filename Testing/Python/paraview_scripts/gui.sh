@@ -23,7 +23,7 @@ trap finish EXIT
 export HOME=$scratch XDG_CONFIG_HOME=$scratch/.config XDG_RUNTIME_DIR=$scratch/run DISPLAY=$display
 mkdir -p "$XDG_RUNTIME_DIR" "$XDG_CONFIG_HOME/ParaView"
 chmod 700 "$XDG_RUNTIME_DIR"
-version=$(paraview --version 2>&1 | grep -o '[0-9.]*$')
+version=$(pvpython --version 2>&1 | grep -o '[0-9][0-9.]*$' | head -1)
 printf '[General]\nGeneralSettings.ShowWelcomeDialog=false\n' >"$XDG_CONFIG_HOME/ParaView/ParaView$version.ini"
 
 Xvfb "$display" -screen 0 1500x1200x24 >/dev/null 2>&1 &

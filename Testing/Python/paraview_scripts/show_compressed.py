@@ -5,6 +5,7 @@ from common import *
 load_plugin(globals())
 view = make_view()
 wavelet = make_wavelet()
+wavelet.UpdatePipeline()
 compressed = ZFPCompress(Input=wavelet, Rate=12)
 assert list(compressed.InputArray) == ["POINTS", "RTData"], list(compressed.InputArray)
 compressed.UpdatePipeline()

@@ -5,6 +5,7 @@ from common import *
 load_plugin(globals())
 simple.LoadState(str(OUTPUT / "state.pvsm"))
 view = simple.GetActiveViewOrCreate("RenderView")
+view.UseFXAA = 0  # a setting of the application, not of the state
 loaded = screenshot(view, "state_loaded.png")
 check_same(read_png(OUTPUT / "state_saved.png"), loaded)
 
