@@ -124,6 +124,7 @@ def view_camera(
     view_up=(0.0, 0.0, 1.0),
     parallel=False,
     aspect=1.0,
+    zoom=1.0,
 ):
     """Camera that looks at a volume's centre and just fits its bounds into the picture.
 
@@ -140,6 +141,8 @@ def view_camera(
         Parallel projection instead of perspective with a view angle of 30°.
     aspect : float, default: 1
         Width over height of the picture.
+    zoom : float, default: 1
+        Magnification, above 0; more than 1 may cut off the volume's corners.
 
     Returns
     -------
@@ -148,18 +151,20 @@ def view_camera(
     Raises
     ------
     ValueError
-        When the directions are zero or parallel, or the bounds are empty.
+        When the directions are zero or parallel, the bounds are empty, or `zoom` is not positive.
 
     Examples
     --------
     >>> view_camera((-1, 1, -1, 1, -1, 1), direction=(1, 0, 0)).focal_point
     (0.0, 0.0, 0.0)
     """
+    if not zoom > 0:
+        raise ValueError(f"zoom must be above 0, got {zoom}")
     centre, sides = _centre_and_sides(target)
     right, up, forward = _basis(direction, view_up)
     corners = [[s * e / 2 for s, e in zip(sides, signs)] for signs in product((-1, 1), repeat=3)]
     # Half heights that corners need in the picture, and how far they stand out to the camera.
-    heights = [max(abs(_dot(c, up)), abs(_dot(c, right)) / aspect) for c in corners]
+    heights = [max(abs(_dot(c, up)), abs(_dot(c, right)) / aspect) / zoom for c in corners]
     slope = math.tan(math.radians(15))
     distance = max(_dot(c, forward) + h / slope for c, h in zip(corners, heights))
     position = tuple(c + distance * f for c, f in zip(centre, forward))

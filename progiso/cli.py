@@ -158,6 +158,7 @@ def _add_camera(command):
         "--up", type=_vector, metavar="X,Y,Z", default=(0.0, 0.0, 1.0),
         help="what is up, without --orbit (default: 0,0,1)",
     )  # fmt: skip
+    command.add_argument("--zoom", type=float, default=1.0, help="without --orbit (default: 1)")
     command.add_argument("--parallel", action="store_true", help="parallel projection")
 
 
@@ -321,7 +322,9 @@ def _render(parsed):
     camera = None
     if parsed.orbit is None:
         aspect = parsed.size[0] / max(1, parsed.size[1])
-        camera = progiso.view_camera(image, parsed.view, parsed.up, parsed.parallel, aspect)
+        camera = progiso.view_camera(
+            image, parsed.view, parsed.up, parsed.parallel, aspect, parsed.zoom
+        )
     elif parsed.parallel:
         raise ValueError("--orbit is a perspective camera, it does not go with --parallel")
     with progress_bar("Rendering") as progress:
