@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cstring>
 #include <sstream>
+#include <string>
 
 vtkStandardNewMacro(vtkImageZFPCompress);
 
@@ -60,6 +61,47 @@ std::string ArrayNames(vtkImageData* image)
     }
   }
   return names.empty() ? "none" : names;
+}
+
+//------------------------------------------------------------------------------
+std::string NameOf(vtkDataArray* array)
+{
+  return array->GetName() && *array->GetName() ? array->GetName() : "scalars";
+}
+
+//------------------------------------------------------------------------------
+// By identity: point and cell arrays may have the same name.
+bool Contains(vtkDataSetAttributes* attributes, vtkDataArray* array)
+{
+  for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
+  {
+    if (attributes->GetAbstractArray(i) == array)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+//------------------------------------------------------------------------------
+// What zfp cannot represent among the values.
+std::string CheckValues(const vtkZFPBlocks::Summary& summary)
+{
+  std::ostringstream error;
+  // zero in place of a tiny value may not show in float32 beside the largest value: 2^24 times
+  // larger
+  const float enough = vtkZFPBlocks::TinyMagnitude() * 16777216.0f;
+  if (!summary.IsFinite())
+  {
+    error << summary.NaNs << " NaN and " << summary.Infinities
+          << " infinite values (as float32), which ZFP cannot compress: replace them first.";
+  }
+  else if (summary.TinyBlocks > 0 && summary.Magnitude() < enough)
+  {
+    error << "values too small for ZFP: the largest is " << summary.Magnitude() << ", and all are "
+          << "below 3e-30 in " << summary.TinyBlocks << " blocks of 4x4x4. Scale them up first.";
+  }
+  return error.str();
 }
 }
 
@@ -122,118 +164,93 @@ vtkDataArray* vtkImageZFPCompress::FindArray(
   vtkInformationVector** inputVector, vtkImageData* input, int& association)
 {
   vtkInformation* choice = this->GetInputArrayInformation(0);
-  const char* chosen =
+  const char* name =
     choice->Has(vtkDataObject::FIELD_NAME()) ? choice->Get(vtkDataObject::FIELD_NAME()) : nullptr;
-  chosen = chosen && *chosen ? chosen
-                             : nullptr; // ParaView's property for "not chosen yet" is an empty name
+  const bool chosen = name && *name; // ParaView sends an empty name for "none chosen yet"
   vtkDataArray* array = this->GetInputArrayToProcess(0, inputVector);
   if (!array && !chosen)
   {
     array = DefaultArray(input->GetPointData());
     array = array ? array : DefaultArray(input->GetCellData());
   }
-  if (!array)
+  if (!array && !chosen && vtkCompressedVolume::IsCompressed(input))
   {
-    std::ostringstream message;
-    if (vtkCompressedVolume::IsCompressed(input))
-    {
-      message << "The input is a compressed volume already: decompress it first.";
-    }
-    else
-    {
-      message << "There is no "
-              << (chosen ? "point or cell array '" + std::string(chosen) + "'" : "array")
-              << " to compress; the input's arrays: " << ArrayNames(input) << ".";
-    }
-    vtkErrorMacro(<< message.str());
-    return nullptr;
+    vtkErrorMacro("The input is a compressed volume already: decompress it first.");
   }
-  // by identity: the same name may occur in both
-  const bool isCellArray = [&]
+  else if (!array)
   {
-    for (int i = 0; i < input->GetCellData()->GetNumberOfArrays(); ++i)
-    {
-      if (input->GetCellData()->GetAbstractArray(i) == array)
-      {
-        return true;
-      }
-    }
-    return false;
-  }();
-  association = isCellArray ? vtkCompressedVolume::CellData : vtkCompressedVolume::PointData;
+    vtkErrorMacro(
+      "There is no " << (chosen ? "point or cell array '" + std::string(name) + "'" : "array")
+                     << " to compress; the input's arrays: " << ArrayNames(input) << ".");
+  }
+  association = array && Contains(input->GetCellData(), array) ? vtkCompressedVolume::CellData
+                                                               : vtkCompressedVolume::PointData;
   return array;
+}
+
+//------------------------------------------------------------------------------
+// What is wrong with the settings or the array's shape; else the samples per axis.
+std::string vtkImageZFPCompress::Check(
+  vtkImageData* input, vtkDataArray* array, int association, int dims[3])
+{
+  std::ostringstream error;
+  input->GetDimensions(dims);
+  vtkIdType samples = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    dims[axis] -= association == vtkCompressedVolume::CellData ? 1 : 0;
+    samples *= dims[axis];
+  }
+  if (vtkCompressedVolume::BlockBitsForRate(this->Rate) == 0)
+  {
+    error << "Rate is " << this->Rate << " bits per sample: it must be in (0, 32].";
+  }
+  else if (this->Component < 0 || this->Component >= array->GetNumberOfComponents())
+  {
+    error << "Component is " << this->Component << ", but array '" << NameOf(array) << "' has "
+          << array->GetNumberOfComponents() << " component(s).";
+  }
+  else if (*std::min_element(dims, dims + 3) < 2)
+  {
+    error << "Only volumes can be compressed: array '" << NameOf(array) << "' has " << dims[0]
+          << " x " << dims[1] << " x " << dims[2]
+          << " samples, at least 2 along each axis are needed.";
+  }
+  else if (array->GetNumberOfTuples() != samples)
+  {
+    error << "Array '" << NameOf(array) << "' has " << array->GetNumberOfTuples()
+          << " tuples, the image needs " << samples << ".";
+  }
+  return error.str();
 }
 
 //------------------------------------------------------------------------------
 bool vtkImageZFPCompress::Compress(
   vtkImageData* input, vtkDataArray* array, int association, vtkImageData* output)
 {
-  const char* name = array->GetName() && *array->GetName() ? array->GetName() : "scalars";
-  const int blockBits = vtkCompressedVolume::BlockBitsForRate(this->Rate);
-  if (blockBits == 0)
-  {
-    vtkErrorMacro("Rate is " << this->Rate << " bits per sample: it must be in (0, 32].");
-    return false;
-  }
-  if (this->Component < 0 || this->Component >= array->GetNumberOfComponents())
-  {
-    vtkErrorMacro("Component is " << this->Component << ", but array '" << name << "' has "
-                                  << array->GetNumberOfComponents() << " component(s).");
-    return false;
-  }
   int dims[3];
-  input->GetDimensions(dims);
-  vtkIdType samples = 1;
-  for (int& n : dims)
+  std::string error = this->Check(input, array, association, dims);
+  if (!error.empty())
   {
-    n -= association == vtkCompressedVolume::CellData ? 1 : 0;
-    samples *= n;
-  }
-  if (*std::min_element(dims, dims + 3) < 2)
-  {
-    vtkErrorMacro("Only volumes can be compressed: array '"
-      << name << "' has " << dims[0] << " x " << dims[1] << " x " << dims[2]
-      << " samples, at least 2 along each axis are needed.");
+    vtkErrorMacro(<< error);
     return false;
   }
-  if (array->GetNumberOfTuples() != samples)
-  {
-    vtkErrorMacro("Array '" << name << "' has " << array->GetNumberOfTuples()
-                            << " tuples, the image needs " << samples << ".");
-    return false;
-  }
-
+  const int blockBits = vtkCompressedVolume::BlockBitsForRate(this->Rate);
   vtkNew<vtkUnsignedCharArray> stream;
   stream->SetNumberOfValues(vtkCompressedVolume::StreamBytesFor(dims, blockBits));
   vtkZFPBlocks blocks(dims, blockBits, stream->GetPointer(0), this->NumberOfThreads);
   vtkZFPBlocks::Summary summary;
-  const vtkTypeInt64 layers = blocks.GetNumberOfLayers();
-  const vtkTypeInt64 step = blocks.GetLayersPerStep();
-  for (vtkTypeInt64 layer = 0; layer < layers; layer += step)
+  const bool complete = blocks.ForEachStep(this,
+    [&](vtkTypeInt64 first, vtkTypeInt64 last)
+    { blocks.Encode(array, this->Component, first, last, summary); });
+  if (!complete)
   {
-    const vtkTypeInt64 end = std::min(layer + step, layers);
-    blocks.Encode(array, this->Component, layer, end, summary);
-    this->UpdateProgress(static_cast<double>(end) / layers);
-    if (this->GetAbortExecute())
-    {
-      return false;
-    }
-  }
-  if (!summary.IsFinite())
-  {
-    vtkErrorMacro("Array '" << name << "' has " << summary.NaNs << " NaN and " << summary.Infinities
-                            << " infinite values (as float32), which ZFP cannot compress: replace "
-                               "them first.");
     return false;
   }
-  // zeros in place of tiny values are below float32's precision of the largest value, or else an
-  // error
-  const float visible = vtkZFPBlocks::TinyMagnitude() * 16777216.0f; // 2^24
-  if (summary.TinyBlocks > 0 && summary.Magnitude() < visible)
+  error = CheckValues(summary);
+  if (!error.empty())
   {
-    vtkErrorMacro("Array '" << name << "' has values too small for ZFP: the largest is "
-                            << summary.Magnitude() << ", and in " << summary.TinyBlocks
-                            << " blocks of 4x4x4 all are below 3e-30. Scale the values up first.");
+    vtkErrorMacro("Array '" << NameOf(array) << "' has " << error);
     return false;
   }
 
@@ -242,7 +259,7 @@ bool vtkImageZFPCompress::Compress(
   volume->SetDimensions(dims);
   volume->SetRange(summary.Minimum, summary.Maximum);
   volume->SetScalarType(array->GetDataType());
-  volume->SetArrayName(name);
+  volume->SetArrayName(NameOf(array));
   volume->SetComponent(this->Component);
   volume->SetAssociation(association);
   volume->SetStream(stream);

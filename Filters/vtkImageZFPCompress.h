@@ -33,6 +33,8 @@
 #include "vtkImageAlgorithm.h"
 #include "vtkProgIsoFiltersModule.h" // for export macro
 
+#include <string> // for error messages
+
 class vtkDataArray;
 
 class VTKPROGISOFILTERS_EXPORT vtkImageZFPCompress : public vtkImageAlgorithm
@@ -90,6 +92,7 @@ private:
 
   vtkDataArray* FindArray(
     vtkInformationVector** inputVector, vtkImageData* input, int& association);
+  std::string Check(vtkImageData* input, vtkDataArray* array, int association, int dims[3]);
   bool Compress(vtkImageData* input, vtkDataArray* array, int association, vtkImageData* output);
 
   double Rate = 8.0;

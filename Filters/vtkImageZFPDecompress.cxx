@@ -90,19 +90,13 @@ int vtkImageZFPDecompress::RequestData(
 
   const auto stream = AlignedStream(volume->GetStream());
   vtkZFPBlocks blocks(dims, volume->GetBlockBits(), stream->GetPointer(0), this->NumberOfThreads);
-  const vtkTypeInt64 layers = blocks.GetNumberOfLayers();
-  const vtkTypeInt64 step = blocks.GetLayersPerStep();
-  for (vtkTypeInt64 layer = 0; layer < layers; layer += step)
+  const bool complete = blocks.ForEachStep(this,
+    [&](vtkTypeInt64 first, vtkTypeInt64 last)
+    { blocks.Decode(samples->GetPointer(0), first, last); });
+  if (!complete)
   {
-    const vtkTypeInt64 end = std::min(layer + step, layers);
-    blocks.Decode(samples->GetPointer(0), layer, end);
-    this->UpdateProgress(static_cast<double>(end) / layers);
-    if (this->GetAbortExecute())
-    {
-      return 1;
-    }
+    return 1;
   }
-
   vtkDataSetAttributes* attributes = output->GetPointData();
   if (volume->GetAssociation() == vtkCompressedVolume::CellData)
   {

@@ -92,6 +92,7 @@ vtkZFPBlocks::vtkZFPBlocks(const int dims[3], int blockBits, void* words, int th
 }
 
 //------------------------------------------------------------------------------
+// About a hundredth of the volume, but enough blocks to keep the threads busy.
 vtkTypeInt64 vtkZFPBlocks::GetLayersPerStep() const
 {
   const vtkTypeInt64 perLayer = this->Blocks[0] * this->Blocks[1];

@@ -4,9 +4,9 @@
  * @class   vtkZFPBlocks
  * @brief   encode and decode runs of blocks of a fixed-rate zfp stream in parallel (internal)
  *
- * Knows a stream of 4x4x4 blocks by its dimensions, bits per block and memory, and neither VTK's
- * pipeline nor files. Work is given in layers of blocks (all blocks with the same z), so that
- * callers can report progress in between.
+ * Knows a stream of 4x4x4 blocks by its dimensions, bits per block and memory, and nothing of
+ * images or files. Work is done in layers of blocks (all blocks with the same z), with progress
+ * reported in between.
  *
  * Why not zfp_compress() with zfp's OpenMP policy: that encodes into one buffer per thread, which
  * one thread concatenates, and it has no parallel decoder. 64 blocks always fill whole 64-bit words
@@ -16,9 +16,11 @@
 #ifndef vtkZFPBlocks_h
 #define vtkZFPBlocks_h
 
+#include "vtkAlgorithm.h" // for progress
 #include "vtkType.h"
 
-#include <limits> // for the empty range
+#include <algorithm> // for std::min
+#include <limits>    // for the empty range
 
 class vtkDataArray;
 
@@ -48,13 +50,27 @@ public:
    */
   vtkZFPBlocks(const int dims[3], int blockBits, void* words, int threads);
 
-  vtkTypeInt64 GetNumberOfLayers() const { return this->Blocks[2]; }
-
   /**
-   * Layers to work on between two progress events: about a hundredth of the volume, but enough
-   * blocks to keep the threads busy.
+   * Calls work(first, last) for a few layers after the other, reporting progress of an algorithm in
+   * between. False when it was aborted.
    */
-  vtkTypeInt64 GetLayersPerStep() const;
+  template <typename Work>
+  bool ForEachStep(vtkAlgorithm* algorithm, Work work) const
+  {
+    const vtkTypeInt64 layers = this->Blocks[2];
+    const vtkTypeInt64 step = this->GetLayersPerStep();
+    for (vtkTypeInt64 layer = 0; layer < layers; layer += step)
+    {
+      const vtkTypeInt64 end = std::min(layer + step, layers);
+      work(layer, end);
+      algorithm->UpdateProgress(static_cast<double>(end) / layers);
+      if (algorithm->GetAbortExecute())
+      {
+        return false;
+      }
+    }
+    return true;
+  }
 
   /**
    * Encode layers [first, last) from one component of an array that holds dims[0]*dims[1]*dims[2]
@@ -93,6 +109,7 @@ private:
   struct Encoder;
   struct EncodeWorker;
 
+  vtkTypeInt64 GetLayersPerStep() const;
   Block GetBlock(vtkTypeInt64 index) const;
   vtkTypeInt64 SampleIndex(const Block& block) const;
   template <typename Body>

@@ -316,17 +316,11 @@ bool vtkZFPReader::FindRange(const Layout& layout, void* words, double range[2],
 {
   vtkZFPBlocks blocks(layout.Dimensions, layout.BlockBits, words, 0);
   vtkZFPBlocks::Summary summary;
-  const vtkTypeInt64 layers = blocks.GetNumberOfLayers();
-  const vtkTypeInt64 step = blocks.GetLayersPerStep();
-  for (vtkTypeInt64 layer = 0; layer < layers; layer += step)
+  const bool complete = blocks.ForEachStep(
+    this, [&](vtkTypeInt64 first, vtkTypeInt64 last) { blocks.Summarise(first, last, summary); });
+  if (!complete)
   {
-    const vtkTypeInt64 end = std::min(layer + step, layers);
-    blocks.Summarise(layer, end, summary);
-    this->UpdateProgress(static_cast<double>(end) / layers);
-    if (this->GetAbortExecute())
-    {
-      return false;
-    }
+    return false;
   }
   if (!summary.IsFinite())
   {
