@@ -6,7 +6,9 @@ cd "$(dirname "$0")/.."
 
 .ci/setup-wheel test && .ci/setup-paraview test || exit 1
 
-export PROGISO_GL_DEBUG=1 PROGISO_PARAVIEW_BUILD="$PWD/build/paraview"
+export PROGISO_GL_DEBUG=1
+# what pytest needs of the ParaView stack: the build, and a Python with pyvista on ParaView's VTK
+export PROGISO_PARAVIEW_BUILD="$PWD/build/paraview" PROGISO_PARAVIEW_PYTHON="$PWD/.venv-paraview/bin/python"
 status=0
 echo "== C++ tests, wheel stack"
 VTK_DEFAULT_OPENGL_WINDOW=vtkOSOpenGLRenderWindow ctest --test-dir build/wheel --output-on-failure || status=1
