@@ -30,10 +30,11 @@ uint CountMissing(ivec3 block, uint needs)
   return missing;
 }
 
-// Room for `count` more blocks? Reservations are never given back within a pass.
+// Room for `count` more blocks? Reservations are never given back within a pass, and blocks that several
+// ask for count several times; a cache with a slot for every block has room for all in any case.
 bool Reserve(uint count)
 {
-  return count == 0u || atomicAdd(control.ReservedSlots, count) + count <= control.FreeSlots;
+  return count == 0u || scene.Cache.x >= uint(scene.Blocks.w) || atomicAdd(control.ReservedSlots, count) + count <= control.FreeSlots;
 }
 
 // Gives the block a slot and lists it for decoding.

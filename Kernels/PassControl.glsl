@@ -37,11 +37,13 @@ void TakeSlots()
 }
 
 // No slot is in use now, so whatever is oldest may go: down to half of the cache when it was found
-// nearly full, nothing when just the map has gone stale.
+// nearly full, nothing when just the map has gone stale. A cache with room for the whole volume never
+// evicts: blocks are deferred there only because reservations count shared neighbours more than once.
 void PlanEviction()
 {
-  bool full = control.DeferredBlocks > 0u && control.FreeSlots < scene.Cache.x / 4u;
-  bool stale = control.MapUsed > scene.Cache.y / 4u * 3u;
+  bool whole = scene.Cache.x >= uint(scene.Blocks.w);
+  bool full = !whole && control.DeferredBlocks > 0u && control.FreeSlots < scene.Cache.x / 4u;
+  bool stale = !whole && control.MapUsed > scene.Cache.y / 4u * 3u;
   control.EvictGroups.X = full || stale ? GroupsFor(scene.Cache.y, 256u) : 0u;
   if (full || stale)
   {
