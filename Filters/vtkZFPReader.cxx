@@ -281,16 +281,17 @@ std::string vtkZFPReader::Load(const Layout& layout, vtkImageData* output)
   }
   auto* const begin = reinterpret_cast<vtkTypeUInt64*>(bytes);
   DropBits(begin, words, shift);
-  stream->SetNumberOfValues(
-    vtkCompressedVolume::StreamBytesFor(layout.Dimensions, layout.BlockBits));
   if (const int used = layout.PayloadBits() % 64)
   {
     begin[layout.PayloadBits() / 64] &= (vtkTypeUInt64(1) << used) - 1;
   }
+  // a word may have become superfluous; this may move the memory
+  stream->SetNumberOfValues(
+    vtkCompressedVolume::StreamBytesFor(layout.Dimensions, layout.BlockBits));
 
   std::string error;
   double range[2];
-  if (!this->FindRange(layout, bytes, range, error))
+  if (!this->FindRange(layout, stream->GetPointer(0), range, error))
   {
     return error;
   }
