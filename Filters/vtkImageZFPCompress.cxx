@@ -99,7 +99,7 @@ std::string CheckValues(const vtkZFPBlocks::Summary& summary)
   else if (summary.TinyBlocks > 0 && summary.Magnitude() < enough)
   {
     error << "values too small for ZFP: the largest is " << summary.Magnitude() << ", and all are "
-          << "below 3e-30 in " << summary.TinyBlocks << " blocks of 4x4x4. Scale them up first.";
+          << "below 3.16e-30 in " << summary.TinyBlocks << " blocks of 4x4x4. Scale them up first.";
   }
   return error.str();
 }
