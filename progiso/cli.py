@@ -56,8 +56,15 @@ def main(arguments=None):
 # ---- arguments
 
 
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong in one line, without repeating the usage."""
+
+    def error(self, message):
+        self.exit(2, f"{self.prog}: error: {message} (see {self.prog} --help)\n")
+
+
 def _parser():
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="progiso",
         description="Progressive isosurfaces of compressed volumes.",
         epilog=f"FILE is anything VTK or nibabel reads as an image: {_READABLE}.",
@@ -152,7 +159,7 @@ def _add_camera(command):
     )
     command.add_argument(
         "--view", type=_vector, metavar="X,Y,Z", default=(0.45, 1.0, 0.3),
-        help="direction from the volume to the camera, without --orbit (default: 0.45,1,0.3)",
+        help="direction from the volume to the camera, without --orbit (default: 0.45,1,0.3); write --view=-1,0,0",
     )  # fmt: skip
     command.add_argument(
         "--up", type=_vector, metavar="X,Y,Z", default=(0.0, 0.0, 1.0),

@@ -120,6 +120,22 @@ def decompress(image, threads=0, progress=None):
     return decompressor.GetOutput()
 
 
+def as_compressed(image, rate=8.0, array=None, component=0, progress=None):
+    """Compress an image unless it is a compressed volume already; parameters as in `compress`.
+
+    Raises
+    ------
+    ValueError
+        When the image is a compressed volume of another array than the one asked for.
+    """
+    if not is_compressed(image_data(image)):
+        return compress(image, rate, array, component, progress=progress)
+    held = describe(image)["array"]
+    if array not in (None, held):
+        raise ValueError(f"the compressed volume has no array {array!r}; it has: {held!r}")
+    return image
+
+
 def is_compressed(image):
     """Tell whether a data object claims to be a compressed volume.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from numbers import Real
 
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction, vtkVolumeProperty
 
@@ -96,13 +97,15 @@ def _speculation_limit(speculation):
 
 
 def _finite(name, value):
-    if not math.isfinite(value):
-        raise ValueError(f"{name} must be a finite number, got {value}")
+    if not isinstance(value, Real) or not math.isfinite(value):
+        raise ValueError(f"{name} must be a finite number, got {value!r}")
     return float(value)
 
 
 def _in_range(name, value, low, high, above=False):
     """Check low ≤ value ≤ high, or low < value when `above`."""
+    if not isinstance(value, Real):
+        raise TypeError(f"{name} must be a number, got {value!r}")
     if not (low < value if above else low <= value) or not value <= high:
         bounds = f"{'(' if above else '['}{low}, {high}]"
         raise ValueError(f"{name} must be in {bounds}, got {value}")

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pyvista
 
-from .compression import compress, decompress, describe, is_compressed
+from .compression import as_compressed, compress, decompress, describe, is_compressed
 from .isosurface import make_isosurface
 from .statistics import depth, statistics
 
@@ -132,7 +132,7 @@ def _compressed(volume, rate, scalars, component):
         volume = pyvista.wrap(volume)
     if not getattr(volume, "IsA", lambda _: False)("vtkImageData"):
         raise TypeError(f"expected pyvista.ImageData or an array, got {type(volume).__name__}")
-    return volume if is_compressed(volume) else compress(volume, rate, scalars, component)
+    return as_compressed(volume, rate, scalars, component)
 
 
 def _matrix(transform):

@@ -16,7 +16,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 from ._files import atomic_path
 from ._vtk import image_data, vtk_errors
 from .camera import orbit_camera, view_camera
-from .compression import compress, is_compressed
+from .compression import as_compressed
 from .isosurface import make_isosurface
 from .statistics import depth, statistics
 
@@ -107,9 +107,8 @@ def render(
     if orbit is not None and camera is not None:
         raise ValueError("give either an orbit or a camera, not both")
     if orbit is not None:
-        camera = orbit_camera(image, *orbit)
-    if not is_compressed(image_data(image)):
-        image = compress(image, rate, array, component, progress=progress)
+        camera = orbit_camera(image_data(image), *orbit)
+    image = as_compressed(image, rate, array, component, progress)
     volume = make_isosurface(image, isovalue, parse_color(color), speculation=speculation)
     window, renderer = _scene(volume, width, height, parse_color(background))
     (camera or view_camera(image, aspect=width / height)).apply(renderer.GetActiveCamera())

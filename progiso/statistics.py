@@ -6,6 +6,7 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
+from ._vtk import vtk_errors
 from .camera import Camera
 
 #: What is known of every pass, in this order.
@@ -113,8 +114,8 @@ def depth(mapper):
     >>> distances[np.isfinite(distances)].min()
     """
     image = vtkImageData()
-    if not mapper.GetDepthImage(image):
-        raise RuntimeError("the mapper has no depth yet: render first")
+    with vtk_errors("no depth"):
+        mapper.GetDepthImage(image)
     width, height, _ = image.GetDimensions()
     rows = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width)
     return np.ascontiguousarray(rows[::-1], np.float32)
