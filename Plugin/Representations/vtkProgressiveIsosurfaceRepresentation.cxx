@@ -205,6 +205,12 @@ void vtkProgressiveIsosurfaceRepresentation::SetIsosurfaceArray(
 }
 
 //------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetIsosurfaceComponent(int component)
+{
+  this->GetIsosurfaceMapper()->SetComponent(component);
+}
+
+//------------------------------------------------------------------------------
 void vtkProgressiveIsosurfaceRepresentation::SetIsovalue(double value)
 {
   vtkContourValues* values = this->Property->GetIsoSurfaceValues();
@@ -266,15 +272,15 @@ double vtkProgressiveIsosurfaceRepresentation::GetTotalMilliseconds()
 }
 
 //------------------------------------------------------------------------------
-vtkIdType vtkProgressiveIsosurfaceRepresentation::GetGPUBytes()
+double vtkProgressiveIsosurfaceRepresentation::GetGPUBytes()
 {
-  return this->GetStatistics()->GetTotalBytes();
+  return static_cast<double>(this->GetStatistics()->GetTotalBytes());
 }
 
 //------------------------------------------------------------------------------
-vtkIdType vtkProgressiveIsosurfaceRepresentation::GetCompressedBytes()
+double vtkProgressiveIsosurfaceRepresentation::GetCompressedBytes()
 {
-  return this->GetStatistics()->GetCompressedBytes();
+  return static_cast<double>(this->GetStatistics()->GetCompressedBytes());
 }
 
 //------------------------------------------------------------------------------

@@ -41,6 +41,9 @@ public:
    */
   void SetIsosurfaceArray(int index, int port, int connection, int association, const char* name);
 
+  /// The component of that array.
+  void SetIsosurfaceComponent(int component);
+
   /// The isovalue, in the units of the array.
   void SetIsovalue(double value);
 
@@ -61,12 +64,12 @@ public:
   ///@}
 
   ///@{
-  /// Statistics of the last image, for the information properties.
+  /// Statistics of the last image, for the information properties (bytes as double: ParaView's panel shows no 64-bit integers).
   int GetNumberOfPasses();
   double GetCompletedFraction();
   double GetTotalMilliseconds();
-  vtkIdType GetGPUBytes();
-  vtkIdType GetCompressedBytes();
+  double GetGPUBytes();
+  double GetCompressedBytes();
   ///@}
 
 protected:

@@ -26,12 +26,17 @@ simple.Hide(compressed, view)
 second = simple.Calculator(Input=wavelet, ResultArrayName="negative", Function="-RTData")
 display = show_isosurface(second, view, IsosurfaceArray=["POINTS", "negative"])
 values = second.PointData["negative"].GetRange()
-check_close(simple.servermanager.vtkSMPropertyHelper(display.SMProxy, "Isovalue").GetAsDouble(), display.Isovalue, "isovalue")
 display.Isovalue = -150.0
 chosen = screenshot(view, "second_array.png")
 assert covered(chosen) > 0.1
 display.IsosurfaceArray = ["POINTS", "RTData"]
 display.Isovalue = 150.0
 check_same(chosen, screenshot(view, "first_array.png"), tolerance=1)
+simple.Hide(second, view)
+
+# a component of a vector array
+vectors = simple.Calculator(Input=wavelet, ResultArrayName="vectors", Function="iHat + RTData*jHat + 2*RTData*kHat")
+display = show_isosurface(vectors, view, IsosurfaceArray=["POINTS", "vectors"], IsosurfaceComponent=2, Isovalue=300.0)
+check_same(chosen, screenshot(view, "component.png"), tolerance=1)
 
 finish(covered=covered(shown), range=values)

@@ -13,6 +13,7 @@ simple.LoadPlugin(str(PLUGIN), remote=False, ns=globals())
 
 view = simple.GetActiveViewOrCreate("RenderView")
 wavelet = simple.Wavelet(WholeExtent=[-64, 64] * 3)
+wavelet.UpdatePipeline()
 compressed = ZFPCompress(Input=wavelet, Rate=8)
 display = simple.Show(compressed, view)
 display.SetRepresentationType("Progressive Isosurface")
@@ -39,4 +40,5 @@ def look_at_progress(*_):
 
 # From here on the window's event loop makes the images: an interactive one, then whatever the mapper asks for.
 view.GetRenderWindow().AddObserver("EndEvent", look_at_progress)
+camera.Azimuth(5)
 view.SMProxy.InteractiveRender()
