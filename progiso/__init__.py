@@ -1,7 +1,8 @@
 """ProgIso: progressive isosurfaces of compressed volumes, for VTK, pyvista and ParaView.
 
 >>> import progiso
->>> result = progiso.render(progiso.read("skull.vti"), isovalue=226)
+>>> from progiso.data import fetch
+>>> result = progiso.render(progiso.read(fetch("sphere", size=32)), isovalue=0.8)
 
 Volumes are compressed by `compress`, read and written by `read` and `save`, shown by `render`,
 by `make_isosurface` in a VTK renderer of your own, or by ``plotter.progiso.add_isosurface`` in
@@ -10,6 +11,7 @@ pyvista.
 
 from __future__ import annotations
 
+from importlib import import_module
 from pkgutil import extend_path
 
 # In a checkout's root, `python -m progiso` finds these sources before the installed package: let
@@ -105,10 +107,5 @@ def __getattr__(name):
     raise AttributeError(f"module 'progiso' has no attribute '{name}'")
 
 
-def _register_with_pyvista():
-    from .pyvista_plugin import register
-
-    register()
-
-
-after_import("pyvista", _register_with_pyvista)
+# The plugin registers itself with pyvista when it is imported.
+after_import("pyvista", lambda: import_module(f"{__name__}.pyvista_plugin"))

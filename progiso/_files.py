@@ -58,8 +58,12 @@ def atomic_path(path):
 
     Examples
     --------
-    >>> with atomic_path("depth.npy") as temporary:
-    ...     numpy.save(temporary, depth)
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     with atomic_path(Path(folder) / "note.txt") as temporary:
+    ...         _ = temporary.write_text("complete")
+    ...     (Path(folder) / "note.txt").read_text()
+    'complete'
     """
     path = Path(path)
     check_output(path)

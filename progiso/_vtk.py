@@ -58,11 +58,13 @@ def vtk_errors(what):
     Examples
     --------
     >>> from vtkmodules.vtkIOXML import vtkXMLImageDataReader
+    >>> reader = vtkXMLImageDataReader()
+    >>> reader.SetFileName("none.vti")
     >>> with vtk_errors("cannot read"):
-    ...     vtkXMLImageDataReader().Update()
+    ...     reader.Update()
     Traceback (most recent call last):
         ...
-    RuntimeError: cannot read: No file name specified
+    RuntimeError: cannot read: Error opening file none.vti
     """
     with captured_output() as capture:
         yield

@@ -36,8 +36,8 @@ def main(arguments=None):
 
     Examples
     --------
-    >>> main(["data", "sphere", "--size", "16"])
-    .../progiso/sphere_16x16x16_float32.raw
+    >>> main(["data", "sphere", "--size", "16"])  # doctest: +ELLIPSIS
+    /.../progiso/sphere_16x16x16_float32.raw
     0
     """
     parsed = _parser().parse_args(arguments)
@@ -159,7 +159,7 @@ def _add_camera(command):
     )
     command.add_argument(
         "--view", type=_vector, metavar="X,Y,Z", default=(0.45, 1.0, 0.3),
-        help="direction from the volume to the camera, without --orbit (default: 0.45,1,0.3); write --view=-1,0,0",
+        help="from the volume to the camera, without --orbit (default: 0.45,1,0.3); --view=-1,0,0",
     )  # fmt: skip
     command.add_argument(
         "--up", type=_vector, metavar="X,Y,Z", default=(0.0, 0.0, 1.0),
@@ -205,7 +205,7 @@ def _pattern(text, pattern, example):
 
 
 def _size(text):
-    return tuple(map(int, _pattern(text, r"(\d+)x(\d+)", "1280x720")))
+    return tuple(map(int, _pattern(text, r"([1-9]\d*)x([1-9]\d*)", "1280x720")))
 
 
 def _sides(text):

@@ -171,7 +171,11 @@ def save(image, path, progress=None):
 
     Examples
     --------
-    >>> progiso.save(progiso.compress(image, rate=4), "skull.vti")
+    >>> import os, tempfile, progiso
+    >>> from progiso.data import fetch
+    >>> volume = progiso.compress(progiso.read(fetch("sphere", size=32)), rate=4)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     progiso.save(volume, os.path.join(folder, "sphere.vti"))
     """
     check_output(path, _WRITERS)
     suffix = suffix_of(path)

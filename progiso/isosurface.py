@@ -62,7 +62,12 @@ def make_isosurface(
 
     Examples
     --------
-    >>> renderer.AddVolume(progiso.make_isosurface(image, 226, color=(0.9, 0.85, 0.75)))
+    >>> import progiso
+    >>> from progiso.data import fetch
+    >>> from vtkmodules.vtkRenderingCore import vtkRenderer
+    >>> image = progiso.read(fetch("sphere", size=32))
+    >>> renderer = vtkRenderer()
+    >>> renderer.AddVolume(progiso.make_isosurface(image, 0.8, color=(0.9, 0.85, 0.75)))
     """
     mapper = vtkProgressiveIsosurfaceMapper()
     mapper.SetInputData(image_data(image))

@@ -23,8 +23,11 @@ def progress_bar(description):
 
     Examples
     --------
+    >>> import progiso
+    >>> from progiso.data import fetch
+    >>> image = progiso.read(fetch("sphere", size=32))
     >>> with progress_bar("Compressing") as progress:
-    ...     progiso.compress(image, progress=progress)
+    ...     volume = progiso.compress(image, progress=progress)
     """
     if not sys.stderr.isatty():
         yield None

@@ -189,6 +189,10 @@ class ImageAccessor:
 
         Examples
         --------
+        >>> import progiso
+        >>> import pyvista as pv
+        >>> image = pv.ImageData(dimensions=(16, 16, 16))
+        >>> image["height"] = image.points[:, 2]
         >>> volume = image.progiso.compress(rate=4)
         """
         return pyvista.wrap(compress(self._image, rate, scalars, component, progress=progress))
@@ -207,7 +211,12 @@ class ImageAccessor:
 
         Examples
         --------
-        >>> image = volume.progiso.decompress()
+        >>> import progiso
+        >>> import pyvista as pv
+        >>> image = pv.ImageData(dimensions=(16, 16, 16))
+        >>> image["height"] = image.points[:, 2]
+        >>> image.progiso.compress(rate=4).progiso.decompress().array_names
+        ['height']
         """
         return pyvista.wrap(decompress(self._image, progress=progress))
 
@@ -262,7 +271,12 @@ class IsosurfaceComponent:
 
         Examples
         --------
-        >>> prop = plotter.progiso.add_isosurface(image, isovalue=226, color="ivory")
+        >>> import progiso
+        >>> import pyvista as pv
+        >>> image = pv.ImageData(dimensions=(16, 16, 16))
+        >>> image["height"] = image.points[:, 2]
+        >>> plotter = pv.Plotter(off_screen=True)
+        >>> prop = plotter.progiso.add_isosurface(image, isovalue=7.5, color="ivory")
         """
         return add_isosurface(self._plotter, volume, isovalue, **kwargs)
 
@@ -295,9 +309,12 @@ class IsosurfaceComponent:
         return depth(prop.GetMapper())
 
 
-def register():
+def _register():
     """Attach the accessor and the component where pyvista has extension points (0.48)."""
     if hasattr(pyvista, "register_dataset_accessor"):
         pyvista.register_dataset_accessor("progiso", pyvista.ImageData)(ImageAccessor)
     if hasattr(pyvista, "register_plotter_component"):
         pyvista.register_plotter_component("progiso")(IsosurfaceComponent)
+
+
+_register()

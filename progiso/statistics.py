@@ -57,9 +57,11 @@ def statistics(mapper, renderer=None):
 
     Examples
     --------
-    >>> result = progiso.render(image, isovalue=226)
-    >>> result.statistics["converged"]
-    True
+    >>> import progiso
+    >>> from progiso.data import fetch
+    >>> result = progiso.render(progiso.read(fetch("sphere", size=32)), 0.8, size=(320, 240))
+    >>> result.statistics["converged"], result.statistics["stages"][0]
+    (True, 'BlockRanges')
     """
     source = mapper.GetStatistics()
     names = range(source.GetNumberOfBuffers())
@@ -110,8 +112,14 @@ def depth(mapper):
 
     Examples
     --------
-    >>> distances = progiso.depth(volume.GetMapper())
-    >>> distances[np.isfinite(distances)].min()
+    >>> import numpy as np, progiso, pyvista
+    >>> from progiso.data import fetch
+    >>> plotter = pyvista.Plotter(off_screen=True, window_size=(320, 240))
+    >>> prop = plotter.progiso.add_isosurface(progiso.read(fetch("sphere", size=32)), 0.8)
+    >>> plotter.show(auto_close=False)
+    >>> distances = progiso.depth(prop.GetMapper())
+    >>> distances.shape, bool(np.isfinite(distances).any())
+    ((240, 320), True)
     """
     image = vtkImageData()
     with vtk_errors("no depth"):
