@@ -39,9 +39,9 @@ def compress(image, rate=8.0, array=None, component=0, threads=0, progress=None)
     TypeError
         When `image` is no image.
     ValueError
-        When there is no such array.
+        When there is no such array or the rate is out of range.
     RuntimeError
-        When the filter refuses: rate or component out of range, a flat image, NaN or infinite
+        When the filter refuses: no such component, a flat image, NaN or infinite
         samples, an image that is compressed already.
 
     Examples
@@ -54,6 +54,8 @@ def compress(image, rate=8.0, array=None, component=0, threads=0, progress=None)
     """
     if is_compressed(image_data(image)):
         raise RuntimeError("cannot compress: the image is a compressed volume already")
+    if not 0 < rate <= 32:
+        raise ValueError(f"rate must be in (0, 32] bits per sample, got {rate:g}")
     compressor = vtkImageZFPCompress()
     compressor.SetInputData(image)
     compressor.SetRate(rate)
