@@ -13,7 +13,7 @@ status=0
 echo "== C++ tests, wheel stack"
 VTK_DEFAULT_OPENGL_WINDOW=vtkOSOpenGLRenderWindow ctest --test-dir build/wheel --output-on-failure || status=1
 echo "== C++ tests, ParaView stack"
-xvfb-run -a -s "-screen 0 1280x1024x24" ctest --test-dir build/paraview --output-on-failure || status=1
+xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" ctest --test-dir build/paraview --output-on-failure || status=1
 echo "== Python tests"
 .venv/bin/python -m pytest Testing/Python "$@" || status=1
 exit $status

@@ -49,7 +49,8 @@ def under_x(*command, python_path=(), timeout=600):
     environment = {k: v for k, v in os.environ.items() if k not in ("VTK_DEFAULT_OPENGL_WINDOW", "PYTHONPATH", "VIRTUAL_ENV", "DISPLAY")}
     environment["PYTHONPATH"] = os.pathsep.join(map(str, python_path))
     environment["PROGISO_GL_DEBUG"] = "1"
-    display = ["xvfb-run", "-n", str(next(displays)), "-s", "-screen 0 1280x1024x24"]
+    # -noreset: the server must not restart, and refuse a connection meanwhile, when its only client closes one to open the next
+    display = ["xvfb-run", "-n", str(next(displays)), "-s", "-screen 0 1280x1024x24 -noreset"]
     done = subprocess.run([*display, *map(str, command)], env=environment, capture_output=True, text=True, timeout=timeout)
     output = done.stdout + done.stderr
     assert done.returncode == 0, output[-6000:]
