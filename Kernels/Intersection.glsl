@@ -53,7 +53,8 @@ bool Inside(float value)
 // Isolation: the parameters at which the cubic turns, in order; 1 where there is none.
 vec2 Extrema(vec4 b)
 {
-  vec3 d = b.yzw - b.xyz; // the derivative's Bernstein coefficients
+  vec3 d = b.yzw - b.xyz; // the derivative's Bernstein coefficients,
+  d /= max(max(abs(d.x), abs(d.y)), abs(d.z)); // scaled so that no square overflows or vanishes
   float a = d.x - 2.0 * d.y + d.z;
   float h = d.y - d.x;
   float discriminant = h * h - a * d.x;
