@@ -10,10 +10,10 @@ DEPTH_VOXELS = 1e-4
 #: The depth image is float32: half a unit in its last place, relative to the depth itself, comes on top of `DEPTH_VOXELS`.
 DEPTH_RELATIVE = 2.0**-24
 
-#: What single precision may do to a sample: its value by this many units in the last place of the largest value at hand
-#: (the interpolant is a sum of eight products), its place by this many voxels (the last place of an index near 256 is 3e-5 voxels,
-#: and the ray's direction adds as much at the volume's far end). `Cast.early` and `Cast.late` follow from it.
-SLACK = Slack(value=8.0, position=3e-5)
+#: What rounding may do to a sample: its value by this many units in the last place (float32) of the largest difference from the
+#: isovalue at hand (the interpolant is a sum of eight products), its place by this many voxels (rays are double, coordinates
+#: within a cell are float32: 6e-8; the rest is room for a ray's own 32 bits over 512 voxels). `Cast.early` and `Cast.late` follow.
+SLACK = Slack(value=8.0, position=1e-6)
 
 #: A ray is clear, and held to `DEPTH_VOXELS`, where the slack moves its hit by at most this many voxels between early and late. Any other
 #: ray grazes: its depth must lie between early and late, give or take `DEPTH_VOXELS`.

@@ -73,6 +73,10 @@ class Scene:
         target.SetParallelProjection(camera.parallel_scale is not None)
         target.SetParallelScale(camera.parallel_scale or 1.0)
 
+    @property
+    def clipping_range(self):
+        return self.renderer.GetActiveCamera().GetClippingRange()
+
     def render(self):
         """Render until the image is complete; return how many renders that took."""
         self.renderer.ResetCameraClippingRange()
@@ -118,7 +122,8 @@ def check_scene(image, isovalue, camera, size=(160, 120), user_matrix=None, graz
     """Render a scene of a compressed volume and hold its depth against the caster; return the scene."""
     scene = Scene(image, isovalue, camera, size, user_matrix, **settings)
     got = scene.depth()
-    expected = cast(volume or reference_volume(image, user_matrix), isovalue, camera, size, tolerances.SLACK)
+    volume = volume or reference_volume(image, user_matrix)
+    expected = cast(volume, isovalue, camera, size, tolerances.SLACK, scene.clipping_range)
     check_depth(got, expected, grazing)
     return scene
 

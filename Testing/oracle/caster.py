@@ -26,7 +26,7 @@ class Slack:
     Attributes
     ----------
     value
-        error of an interpolated value, in units in the last place (float32) of the cell's largest value.
+        error of an interpolated value, in units in the last place (float32) of the cell's largest difference from the isovalue.
     position
         error of a sample's position, in voxels.
     """
@@ -82,11 +82,15 @@ class Camera:
             camera.GetParallelScale() if camera.GetParallelProjection() else None,
         )
 
+    @property
+    def forward(self):
+        """Unit vector across the image plane."""
+        return _unit(np.subtract(self.focal_point, self.position, dtype=float))
+
     def rays(self, size):
         """Return origins and unit directions, each [height * width, 3], for an image of `size` (width, height)."""
         width, height = size
-        position = np.asarray(self.position, float)
-        forward = _unit(np.asarray(self.focal_point, float) - position)
+        position, forward = np.asarray(self.position, float), self.forward
         right = _unit(np.cross(forward, np.asarray(self.view_up, float)))
         up = np.cross(right, forward)
         x, y = np.meshgrid((np.arange(width) + 0.5) / width * 2 - 1, 1 - (np.arange(height) + 0.5) / height * 2)
@@ -117,7 +121,7 @@ class Cast:
     voxels: np.ndarray
 
 
-def cast(volume, isovalue, camera, size, slack=Slack()):
+def cast(volume, isovalue, camera, size, slack=Slack(), clip=(0.0, np.inf)):
     """Cast one ray through the centre of each of the image's pixels.
 
     Parameters
@@ -128,27 +132,31 @@ def cast(volume, isovalue, camera, size, slack=Slack()):
     size : (int, int)
         width and height of the image.
     slack : Slack
+    clip : (float, float)
+        distances of the clipping planes, across the view, between which the rays go.
 
     Returns
     -------
     Cast
     """
     origins, directions = camera.rays(size)
-    result = cast_rays(volume, isovalue, origins, directions, slack)
+    across = directions @ camera.forward
+    result = cast_rays(volume, isovalue, origins, directions, slack, clip[0] / across, clip[1] / across)
     shape = (size[1], size[0])
     return Cast(*(getattr(result, name).reshape(shape) for name in ("depth", "early", "late", "voxels")))
 
 
-def cast_rays(volume, isovalue, origins, directions, slack=Slack()):
-    """Cast the rays ``origins + t * directions``, t >= 0, with unit directions; see `cast`."""
+def cast_rays(volume, isovalue, origins, directions, slack=Slack(), begin=0.0, end=np.inf):
+    """Cast the rays ``origins + t * directions``, t from `begin` to `end`, with unit directions; see `cast`."""
     grid = _Grid(volume.values, float(isovalue), slack)
     to_index = np.linalg.inv(volume.index_to_world[:3, :3])
     starts = (np.asarray(origins, float) - volume.index_to_world[:3, 3]) @ to_index.T
     steps = np.asarray(directions, float) @ to_index.T
+    begin, end = np.broadcast_to(begin, len(starts)), np.broadcast_to(end, len(starts))
     hits = np.full((3, len(starts)), np.inf)
     for first in range(0, len(starts), CHUNK):
         part = slice(first, first + CHUNK)
-        hits[:, part] = _cast_chunk(grid, starts[part].T, steps[part].T, slack)
+        hits[:, part] = _cast_chunk(grid, starts[part].T, steps[part].T, begin[part], end[part], slack)
     return Cast(hits[1], hits[0], hits[2], np.linalg.norm(steps, axis=1))
 
 
@@ -171,7 +179,7 @@ class _Grid:
         self.strides = np.array([1, self.size[0], self.size[0] * self.size[1]])
         excess = values.astype(float) - isovalue
         low, high = _cell_extremes(excess, np.minimum), _cell_extremes(excess, np.maximum)
-        largest = np.maximum(_cell_extremes(np.abs(values.astype(float)), np.maximum), abs(isovalue))
+        largest = np.maximum(np.abs(low), np.abs(high))
         error = slack.value * FLOAT32_ULP * largest + slack.position * (high - low)
         # Bit 0: a ray that started inside can get out here. Bit 1: one that started outside can get in.
         matters = (low <= error).astype(np.uint8) | ((high >= -error).astype(np.uint8) << 1)
@@ -216,26 +224,26 @@ def _cell_extremes(samples, pick):
 # --- a ray's way through the grid -----------------------------------------------------------------------------------------
 
 
-def _clip(start, step, low, high):
-    """Return where rays enter and leave a box; they miss it where ``enter > leave``."""
+def _clip(start, step, begin, end, low, high):
+    """Return where rays from `begin` to `end` enter and leave a box; they miss it where ``enter > leave``."""
     with np.errstate(divide="ignore", invalid="ignore"):
         a, b = (low[:, None] - start) / step, (high[:, None] - start) / step
     parallel = step == 0
     between = (start >= low[:, None]) & (start <= high[:, None])
     near = np.where(parallel, np.where(between, -np.inf, np.inf), np.minimum(a, b)).max(axis=0)
     far = np.where(parallel, np.where(between, np.inf, -np.inf), np.maximum(a, b)).min(axis=0)
-    return np.maximum(near, 0.0), far
+    return np.maximum(near, begin), np.minimum(far, end)
 
 
-def _cast_chunk(grid, start, step, slack):
+def _cast_chunk(grid, start, step, begin, end, slack):
     """Return `early`, `depth` and `late` of rays given in index space."""
     last = (grid.size - 1).astype(float)
     hits = np.full((3, start.shape[1]), np.inf)
-    enter, leave = _clip(start, step, np.zeros(3), last)
+    enter, leave = _clip(start, step, begin, end, np.zeros(3), last)
     if slack.position:
         # Rays that just touch the box, or just miss it, may be seen by another caster as it likes.
-        touch, off = _clip(start, step, np.full(3, -slack.position), last + slack.position)
-        core, out = _clip(start, step, np.full(3, slack.position), last - slack.position)
+        touch, off = _clip(start, step, begin, end, np.full(3, -slack.position), last + slack.position)
+        core, out = _clip(start, step, begin, end, np.full(3, slack.position), last - slack.position)
         edge = (touch <= off) & (core > out)
         hits[0, edge] = touch[edge]
     rays = np.flatnonzero(enter <= leave)

@@ -1,8 +1,20 @@
 """Cell data, several arrays, and components."""
 
-from common import *
+from common import (
+    check_converged,
+    check_same,
+    covered,
+    finish,
+    load_plugin,
+    look,
+    make_view,
+    make_wavelet,
+    screenshot,
+    show_isosurface,
+)
+from paraview import simple
 
-load_plugin(globals())
+load_plugin()
 view = make_view()
 wavelet = make_wavelet(16)
 cells = simple.PointDatatoCellData(Input=wavelet)
@@ -16,7 +28,7 @@ assert covered(shown) > 0.1
 simple.Hide(cells, view)
 
 # compressed cell data: the same image
-compressed = ZFPCompress(Input=cells, Rate=8)
+compressed = simple.ZFPCompress(Input=cells, Rate=8)
 assert list(compressed.InputArray) == ["CELLS", "RTData"], list(compressed.InputArray)
 show_isosurface(compressed, view, Isovalue=150.0)
 check_same(shown, screenshot(view, "cells_compressed.png"))

@@ -17,12 +17,12 @@ PROGRESSIVE_ISOSURFACE = "Progressive Isosurface"
 SIZE = [320, 240]
 
 
-def load_plugin(namespace):
-    """Load the plugin of the build directory and put its proxies into `namespace`."""
+def load_plugin():
+    """Load the plugin of the build directory; its filters are then found in `paraview.simple`."""
     found = sorted(BUILD.glob("lib*/**/plugins/ProgIso/ProgIso.so"))
     if len(found) != 1:
         raise FileNotFoundError(f"one ProgIso.so expected under {BUILD}, found {len(found)}")
-    simple.LoadPlugin(str(found[0]), remote=False, ns=namespace)
+    simple.LoadPlugin(str(found[0]), remote=False, ns=vars(simple))
     OUTPUT.mkdir(parents=True, exist_ok=True)
 
 

@@ -1,9 +1,10 @@
 """Inputs that cannot be drawn: one error that says why, an empty image, and no crash."""
 
-from common import *
+from common import PROGRESSIVE_ISOSURFACE, covered, finish, load_plugin, make_view, make_wavelet, screenshot
+from paraview import simple
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 
-load_plugin(globals())
+load_plugin()
 view = make_view()
 
 
@@ -43,7 +44,7 @@ output.PointData.append(numpy.arange(64.0), "values")
 """
 check_refused(rectilinear, "image data only", "errors_rectilinear.png")
 
-damaged = simple.ProgrammableFilter(Input=ZFPCompress(Input=make_wavelet()), CopyArrays=1)
+damaged = simple.ProgrammableFilter(Input=simple.ZFPCompress(Input=make_wavelet()), CopyArrays=1)
 damaged.Script = """
 image = self.GetImageDataOutput()
 image.ShallowCopy(self.GetInput())

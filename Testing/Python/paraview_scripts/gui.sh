@@ -26,7 +26,7 @@ chmod 700 "$XDG_RUNTIME_DIR"
 version=$(pvpython --version 2>&1 | grep -o '[0-9][0-9.]*$' | head -1)
 printf '[General]\nGeneralSettings.ShowWelcomeDialog=false\n[MainWindow]\nSize=@Size(1600 1500)\nPosition=@Point(0 0)\n' >"$XDG_CONFIG_HOME/ParaView/ParaView$version.ini"
 
-Xvfb "$display" -screen 0 1600x1500x24 >/dev/null 2>&1 &
+Xvfb "$display" -screen 0 1600x1500x24 -noreset >/dev/null 2>&1 &
 server=$!
 for _ in $(seq 50); do
   [ -e "/tmp/.X11-unix/X${display#:}" ] && break

@@ -9,12 +9,12 @@ from paraview import servermanager, simple
 
 BUILD = pathlib.Path(os.environ["PROGISO_GUI_BUILD"])
 (PLUGIN,) = BUILD.glob("lib*/**/plugins/ProgIso/ProgIso.so")
-simple.LoadPlugin(str(PLUGIN), remote=False, ns=globals())
+simple.LoadPlugin(str(PLUGIN), remote=False, ns=vars(simple))
 
 view = simple.GetActiveViewOrCreate("RenderView")
 wavelet = simple.Wavelet(WholeExtent=[-64, 64] * 3)
 wavelet.UpdatePipeline()
-compressed = ZFPCompress(Input=wavelet, Rate=8)
+compressed = simple.ZFPCompress(Input=wavelet, Rate=8)
 display = simple.Show(compressed, view)
 display.SetRepresentationType("Progressive Isosurface")
 display.Isovalue = 150.0

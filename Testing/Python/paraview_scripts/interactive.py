@@ -1,8 +1,18 @@
 """Interactive renders show what is there and never lose it: refinement ends at the image that a still render makes at once."""
 
-from common import *
+from common import (
+    check_same,
+    finish,
+    information,
+    load_plugin,
+    look,
+    make_view,
+    make_wavelet,
+    screenshot,
+    show_isosurface,
+)
 
-load_plugin(globals())
+load_plugin()
 view = make_view([640, 480])
 wavelet = make_wavelet(48)
 display = show_isosurface(wavelet, view, Isovalue=150.0)

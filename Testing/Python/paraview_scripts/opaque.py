@@ -1,8 +1,9 @@
 """The isosurface among other geometry: it hides and is hidden by depth, and translucent geometry blends over it."""
 
-from common import *
+from common import check_same, covered, finish, load_plugin, look, make_view, make_wavelet, screenshot, show_isosurface
+from paraview import simple
 
-load_plugin(globals())
+load_plugin()
 view = make_view()
 wavelet = make_wavelet()
 display = show_isosurface(wavelet, view, Isovalue=150.0, DiffuseColor=[1.0, 1.0, 1.0])

@@ -1,12 +1,26 @@
 """A compressed volume, which has no arrays, as progressive isosurface; and the filters that make and undo it."""
 
-from common import *
+from common import (
+    check_close,
+    check_converged,
+    check_same,
+    covered,
+    finish,
+    load_plugin,
+    look,
+    make_view,
+    make_wavelet,
+    middle,
+    screenshot,
+    show_isosurface,
+)
+from paraview import servermanager, simple
 
-load_plugin(globals())
+load_plugin()
 view = make_view()
 wavelet = make_wavelet()
 wavelet.UpdatePipeline()
-compressed = ZFPCompress(Input=wavelet, Rate=12)
+compressed = simple.ZFPCompress(Input=wavelet, Rate=12)
 assert list(compressed.InputArray) == ["POINTS", "RTData"], list(compressed.InputArray)
 compressed.UpdatePipeline()
 assert compressed.PointData.GetNumberOfArrays() == 0
@@ -32,7 +46,7 @@ check_same(shown, screenshot(view, "compressed_plain.png"))
 simple.Hide(wavelet, view)
 
 # decompressed: the original to within what 12 bits per voxel lose
-decompressed = ZFPDecompress(Input=compressed)
+decompressed = simple.ZFPDecompress(Input=compressed)
 decompressed.UpdatePipeline()
 restored = decompressed.PointData["RTData"].GetRange()
 assert abs(restored[0] - values[0]) < 1 and abs(restored[1] - values[1]) < 1, (restored, values)

@@ -1,8 +1,23 @@
 """A plain image as progressive isosurface: default isovalue, colours, statistics, speculation, and no restart without need."""
 
-from common import *
+from common import (
+    check_close,
+    check_converged,
+    check_same,
+    covered,
+    finish,
+    information,
+    load_plugin,
+    look,
+    make_view,
+    make_wavelet,
+    middle,
+    screenshot,
+    show_isosurface,
+)
+from paraview import simple
 
-load_plugin(globals())
+load_plugin()
 view = make_view()
 wavelet = make_wavelet()
 display = show_isosurface(wavelet, view)

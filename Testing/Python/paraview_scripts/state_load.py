@@ -1,8 +1,19 @@
 """Load the state of state_save.py in a new process and compare."""
 
-from common import *
+from common import (
+    OUTPUT,
+    PROGRESSIVE_ISOSURFACE,
+    check_converged,
+    check_same,
+    covered,
+    finish,
+    load_plugin,
+    read_png,
+    screenshot,
+)
+from paraview import simple
 
-load_plugin(globals())
+load_plugin()
 simple.LoadState(str(OUTPUT / "state.pvsm"))
 view = simple.GetActiveViewOrCreate("RenderView")
 view.UseFXAA = 0  # a setting of the application, not of the state

@@ -1,10 +1,22 @@
 """zfp's own files and VTI files of compressed volumes through ParaView's readers and writers."""
 
-from common import *
+from common import (
+    OUTPUT,
+    check_same,
+    covered,
+    finish,
+    load_plugin,
+    look,
+    make_view,
+    make_wavelet,
+    screenshot,
+    show_isosurface,
+)
+from paraview import simple
 
-load_plugin(globals())
+load_plugin()
 view = make_view()
-compressed = ZFPCompress(Input=make_wavelet(), Rate=8)
+compressed = simple.ZFPCompress(Input=make_wavelet(), Rate=8)
 look_at = dict(Isovalue=150.0, DiffuseColor=[0.9, 0.85, 0.7])
 show_isosurface(compressed, view, **look_at)
 look(view)
@@ -32,7 +44,7 @@ simple.Hide(zfp, view)
 # without header the reader must be told
 path = str(OUTPUT / "headerless.zfp")
 simple.SaveData(path, compressed, WriteHeader=0)
-bare = ZFPReader(FileName=path, DataDimensions=[49, 49, 49], Rate=8, DataOrigin=[-24.0, -24.0, -24.0])
+bare = simple.ZFPReader(FileName=path, DataDimensions=[49, 49, 49], Rate=8, DataOrigin=[-24.0, -24.0, -24.0])
 show_isosurface(bare, view, **look_at)
 check_same(direct, screenshot(view, "files_headerless.png"))
 

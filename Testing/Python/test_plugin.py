@@ -1,0 +1,45 @@
+"""The plugin, script by script: each of paraview_scripts/ checks what it shows and prints what it found as JSON."""
+
+import json
+import os
+import shutil
+import subprocess
+
+import pytest
+from test_paraview import HERE, build, displays, under_x  # noqa: F401 (build is a fixture)
+
+pytestmark = pytest.mark.paraview
+
+SCRIPTS = HERE / "paraview_scripts"
+
+
+def run(name, build, folder):  # noqa: F811
+    """Run a script in pvpython and return what it found."""
+    output = under_x("pvpython", SCRIPTS / f"{name}.py", build, folder)
+    (found,) = [line for line in output.splitlines() if line.startswith("{")]
+    return json.loads(found)
+
+
+@pytest.mark.parametrize(
+    "name", ["show_plain", "show_compressed", "opaque", "zfp_files", "interactive", "errors", "cell_data"]
+)
+def test_script(name, build, tmp_path):  # noqa: F811
+    run(name, build, tmp_path)
+
+
+def test_state(build, tmp_path):  # noqa: F811
+    """A state saved by one process looks the same in another."""
+    assert run("state_save", build, tmp_path) == run("state_load", build, tmp_path)
+
+
+def test_window(build, tmp_path):  # noqa: F811
+    """ParaView's own window shows an isosurface, refined by its event loop."""
+    if not shutil.which("paraview"):
+        pytest.skip("there is no `paraview`, only its Python interpreters")
+    environment = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "VIRTUAL_ENV")}
+    command = ["bash", SCRIPTS / "gui.sh", build, tmp_path, f":{next(displays)}"]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stdout + done.stderr
+    found = json.loads(done.stdout.splitlines()[-1])
+    assert found["completed"][-1] == 1.0 and found["completed"] == sorted(found["completed"])
+    assert (tmp_path / "gui_window.png").stat().st_size > 50_000
