@@ -18,8 +18,7 @@ def choose_window():
     GPU is driven through EGL, and without one Mesa's software renderer through OSMesa. Where
     neither library is found, VTK is left to its own search.
     """
-    version = (vtkVersion.GetVTKMajorVersion(), vtkVersion.GetVTKMinorVersion())
-    if not sys.platform.startswith("linux") or version < (9, 4):
+    if not sys.platform.startswith("linux") or _needs_display():
         return
     if os.environ.get("DISPLAY") or os.environ.get("VTK_DEFAULT_OPENGL_WINDOW"):
         return
@@ -27,6 +26,27 @@ def choose_window():
         os.environ["VTK_DEFAULT_OPENGL_WINDOW"] = "vtkEGLRenderWindow"
     elif _loads("libOSMesa.so.8") or _loads("libOSMesa.so"):
         os.environ["VTK_DEFAULT_OPENGL_WINDOW"] = "vtkOSOpenGLRenderWindow"
+
+
+def check_display():
+    """Complain where VTK would abort the process.
+
+    Raises
+    ------
+    RuntimeError
+        With a VTK that knows X11 only, when no display is set.
+    """
+    if _needs_display() and not os.environ.get("DISPLAY"):
+        raise RuntimeError(
+            f"VTK {vtkVersion.GetVTKVersion()} draws on X11 displays only and DISPLAY is not set; "
+            "start one, or run under xvfb-run"
+        )
+
+
+def _needs_display():
+    """Whether this VTK opens X11 windows only: on Linux, before 9.4."""
+    version = (vtkVersion.GetVTKMajorVersion(), vtkVersion.GetVTKMinorVersion())
+    return sys.platform.startswith("linux") and version < (9, 4)
 
 
 def _has_gpu():

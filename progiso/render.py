@@ -14,6 +14,7 @@ from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
 from ._files import atomic_path
+from ._opengl import check_display
 from ._vtk import image_data, vtk_errors
 from .camera import orbit_camera, view_camera
 from .compression import as_compressed
@@ -103,6 +104,7 @@ def render(
     >>> result.image.shape, result.statistics["converged"]
     ((240, 320, 3), True)
     """
+    check_display()
     width, height = _checked_size(size)
     if orbit is not None and camera is not None:
         raise ValueError("give either an orbit or a camera, not both")
