@@ -58,10 +58,28 @@ void Paste(const std::string& file, std::set<std::string>& pasted, std::ostrings
 }
 }
 
-std::string AssembleShader(const std::string& file, const StageInfo& stage)
+const std::vector<std::string>& RequiredExtensions()
 {
+  static const std::vector<std::string> names = { "GL_ARB_arrays_of_arrays", "GL_ARB_clear_buffer_object",
+    "GL_ARB_compute_shader", "GL_ARB_explicit_attrib_location", "GL_ARB_gpu_shader5", "GL_ARB_gpu_shader_fp64",
+    "GL_ARB_shader_bit_encoding", "GL_ARB_shader_image_load_store", "GL_ARB_shader_storage_buffer_object",
+    "GL_ARB_shading_language_420pack", "GL_ARB_shading_language_packing", "GL_ARB_timer_query" };
+  return names;
+}
+
+std::string AssembleShader(const std::string& file, const StageInfo& stage, bool byExtensions)
+{
+  // functions and objects only; the compiler knows these by another name or not at all
+  static const std::set<std::string> unknownToGLSL = { "GL_ARB_clear_buffer_object", "GL_ARB_timer_query" };
   std::ostringstream out;
-  out << "#version 430\n";
+  out << (byExtensions ? "#version 150\n" : "#version 430\n");
+  for (const std::string& extension : RequiredExtensions())
+  {
+    if (byExtensions && !unknownToGLSL.count(extension))
+    {
+      out << "#extension " << extension << " : require\n";
+    }
+  }
   int binding = 0;
   for (Buffer buffer : stage.Buffers)
   {

@@ -46,7 +46,11 @@ const std::vector<StageInfo>& PipelineStages();
 /// Text of every GLSL file, by name (generated).
 const std::map<std::string, const char*>& ShaderSources();
 
-/// Complete source of a file for a stage: version, buffer bindings, and the file with its includes.
-std::string AssembleShader(const std::string& file, const StageInfo& stage);
+/// What an OpenGL context older than 4.3 must offer instead, by name.
+const std::vector<std::string>& RequiredExtensions();
+
+/// Complete source of a file for a stage: version (4.30, or 1.50 with the required extensions), buffer
+/// bindings, and the file with its includes.
+std::string AssembleShader(const std::string& file, const StageInfo& stage, bool byExtensions);
 
 #endif

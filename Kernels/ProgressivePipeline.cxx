@@ -67,19 +67,43 @@ bool ProgressivePipeline::Fail(const std::string& message)
   return false;
 }
 
+// OpenGL 4.3, or an older context with its extensions: VTK asks EGL for 3.2, and NVIDIA gives just that.
+bool ProgressivePipeline::CheckContext()
+{
+  GLint major = 0, minor = 0, count = 0;
+  glGetIntegerv(GL_MAJOR_VERSION, &major);
+  glGetIntegerv(GL_MINOR_VERSION, &minor);
+  this->ByExtensions = major * 10 + minor < 43;
+  if (!this->ByExtensions)
+  {
+    return true;
+  }
+  std::set<std::string> offered;
+  glGetIntegerv(GL_NUM_EXTENSIONS, &count);
+  for (GLint i = 0; i < count; ++i)
+  {
+    offered.insert(reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(i))));
+  }
+  for (const std::string& extension : RequiredExtensions())
+  {
+    if (!offered.count(extension))
+    {
+      return this->Fail("needs OpenGL 4.3 (compute shaders), but this context offers " + std::to_string(major) + "." +
+        std::to_string(minor) + " without " + extension + ": use a newer driver, or Mesa's llvmpipe");
+    }
+  }
+  return true;
+}
+
 bool ProgressivePipeline::Initialize()
 {
   if (this->SceneBuffer)
   {
     return true;
   }
-  GLint major = 0, minor = 0;
-  glGetIntegerv(GL_MAJOR_VERSION, &major);
-  glGetIntegerv(GL_MINOR_VERSION, &minor);
-  if (major * 10 + minor < 43)
+  if (!this->CheckContext())
   {
-    return this->Fail("needs OpenGL 4.3 (compute shaders), but this context offers " + std::to_string(major) + "." +
-      std::to_string(minor) + ": use a newer driver, or Mesa's llvmpipe");
+    return false;
   }
   const char* debug = std::getenv("PROGISO_GL_DEBUG");
   if (debug && *debug && *debug != '0')
@@ -150,12 +174,12 @@ GLuint ProgressivePipeline::Program(Stage stage)
   std::string log;
   if (stage == Stage::Composite)
   {
-    log = AttachShader(program, GL_VERTEX_SHADER, AssembleShader(name + ".vert", info)) +
-      AttachShader(program, GL_FRAGMENT_SHADER, AssembleShader(name + ".frag", info));
+    log = AttachShader(program, GL_VERTEX_SHADER, AssembleShader(name + ".vert", info, this->ByExtensions)) +
+      AttachShader(program, GL_FRAGMENT_SHADER, AssembleShader(name + ".frag", info, this->ByExtensions));
   }
   else
   {
-    log = AttachShader(program, GL_COMPUTE_SHADER, AssembleShader(name + ".comp", info));
+    log = AttachShader(program, GL_COMPUTE_SHADER, AssembleShader(name + ".comp", info, this->ByExtensions));
   }
   glLinkProgram(program);
   GLint linked = 0;
@@ -430,8 +454,8 @@ bool ProgressivePipeline::SetScene(const SceneBlock& scene)
   this->UploadScene();
   if (this->Extent.Slots == 0)
   {
-    // a sixteenth of the pixels holds the paper's working sets of small volumes; it grows on demand
-    const std::int64_t wanted = std::max<std::int64_t>(4096, this->Extent.Pixels / 16);
+    // holds the working sets of small volumes; it grows on demand
+    const std::int64_t wanted = std::max<std::int64_t>(16384, this->Extent.Pixels / 8);
     return this->ResizeCache(std::min(wanted, this->MaximumSlots()));
   }
   return true;

@@ -82,6 +82,7 @@ public:
 private:
   using Clock = std::chrono::steady_clock;
 
+  bool CheckContext();
   GLuint Program(Stage stage);
   void Bind(Stage stage);
   void Dispatch(Stage stage, std::int64_t groupsX, std::int64_t groupsY = 1);
@@ -118,6 +119,7 @@ private:
   std::int64_t CacheLimit = 0;
   int SpeculationLimit = 64;
   bool SoftwareRenderer = false;
+  bool ByExtensions = false; ///< the context is older than 4.3 but offers what we need
 
   bool Started = false;
   std::int64_t Remaining = 0; ///< live rays after the last known pass
