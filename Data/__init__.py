@@ -25,10 +25,18 @@ def cache_folder():
     -------
     pathlib.Path
         ``$XDG_CACHE_HOME/progiso``, by default ``~/.cache/progiso``.
+
+    Raises
+    ------
+    OSError
+        When it cannot be created.
     """
     root = os.environ.get("XDG_CACHE_HOME", "")
     folder = (Path(root) if os.path.isabs(root) else Path.home() / ".cache") / "progiso"
-    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OSError(f"no cache folder: {error}; set XDG_CACHE_HOME to another one") from None
     return folder
 
 
