@@ -34,7 +34,7 @@ void GLAPIENTRY CountError(GLenum, GLenum type, GLuint, GLenum, GLsizei, const G
   }
 }
 
-// Compiles one shader into a program; the log where that fails.
+// Compiles one shader into a program; the compiler's log where that fails.
 std::string AttachShader(GLuint program, GLenum type, const std::string& source)
 {
   GLuint shader = glCreateShader(type);
@@ -186,7 +186,9 @@ GLuint ProgressivePipeline::Program(Stage stage)
   glGetProgramiv(program, GL_LINK_STATUS, &linked);
   if (!linked)
   {
-    this->Fail("shader " + name + " does not build on this driver: " + log);
+    char text[2048] = {};
+    glGetProgramInfoLog(program, sizeof(text), nullptr, text);
+    this->Fail("shader " + name + " does not build on this driver: " + log + text);
   }
   return program;
 }

@@ -11,54 +11,63 @@
 
 layout(local_size_x = 64) in;
 
-// The up to eight blocks around the hit: lowest one, and the slots.
-struct Neighbourhood
-{
-  ivec3 Low;
-  uint Slots[8];
-};
+// Where the samples around a cell are: for the four planes of samples from one before the cell to one
+// behind it, on each axis, what they add to the index of the block (of the eight below) and within it.
+uint blockSlots[8];
+uvec4 blockX, blockY, blockZ;
+uvec4 withinX, withinY, withinZ;
 
-Neighbourhood FindNeighbourhood(ivec3 cell)
+void FindSamples(ivec3 cell)
 {
-  Neighbourhood around;
-  around.Low = max(cell - 1, ivec3(0)) >> 2;
-  for (uint i = 0u; i < 8u; ++i)
+  ivec4 planes = ivec4(-1, 0, 1, 2);
+  ivec3 last = scene.Samples.xyz - 1;
+  ivec4 x = clamp(cell.x + planes, ivec4(0), ivec4(last.x));
+  ivec4 y = clamp(cell.y + planes, ivec4(0), ivec4(last.y));
+  ivec4 z = clamp(cell.z + planes, ivec4(0), ivec4(last.z));
+  ivec3 low = ivec3(x.x, y.x, z.x) >> 2;
+  ivec3 high = ivec3(x.w, y.w, z.w) >> 2;
+  blockX = uvec4((x >> 2) - low.x);
+  blockY = uvec4((y >> 2) - low.y) * 2u;
+  blockZ = uvec4((z >> 2) - low.z) * 4u;
+  withinX = uvec4(x & 3);
+  withinY = uvec4(y & 3) * 4u;
+  withinZ = uvec4(z & 3) * 16u;
+  for (int i = 0; i < 8; ++i)
   {
-    ivec3 block = min(around.Low + ivec3(i & 1u, (i >> 1) & 1u, i >> 2), (min(cell + 2, scene.Samples.xyz - 1)) >> 2);
+    ivec3 block = min(low + (ivec3(i) >> ivec3(0, 1, 2) & 1), high);
     uint entry = FindEntry(BlockIndex(block));
-    around.Slots[i] = entry == NONE ? NONE : cacheMap[entry].Slot;
+    blockSlots[i] = entry == NONE ? 0u : cacheMap[entry].Slot;
   }
-  return around;
 }
 
-float Value(Neighbourhood around, ivec3 voxel)
+// Sample on planes (i, j, k), 0 … 3 each; the cell's own are 1 and 2.
+float Sample(int i, int j, int k)
 {
-  ivec3 v = clamp(voxel, ivec3(0), scene.Samples.xyz - 1);
-  ivec3 offset = (v >> 2) - around.Low;
-  uint slot = around.Slots[offset.x + 2 * offset.y + 4 * offset.z];
-  ivec3 local = v & 3;
-  return uintBitsToFloat(cacheValues[slot * 64u + uint(local.x + 4 * local.y + 16 * local.z)]);
+  uint slot = blockSlots[blockX[i] + blockY[j] + blockZ[k]];
+  return uintBitsToFloat(cacheValues[slot * 64u + withinX[i] + withinY[j] + withinZ[k]]);
 }
 
-// Value of the interpolant at the hit, moved by a whole number of voxels.
-float Interpolate(Neighbourhood around, ivec3 cell, vec3 u)
+// Central differences at the cell's corners, interpolated.
+vec3 Gradient(HitPoint hit)
 {
-  vec4 x = vec4(mix(Value(around, cell), Value(around, cell + ivec3(1, 0, 0)), u.x),
-    mix(Value(around, cell + ivec3(0, 1, 0)), Value(around, cell + ivec3(1, 1, 0)), u.x),
-    mix(Value(around, cell + ivec3(0, 0, 1)), Value(around, cell + ivec3(1, 0, 1)), u.x),
-    mix(Value(around, cell + ivec3(0, 1, 1)), Value(around, cell + ivec3(1, 1, 1)), u.x));
-  vec2 y = mix(x.xz, x.yw, u.y);
-  return mix(y.x, y.y, u.z);
-}
-
-vec3 Gradient(Neighbourhood around, HitPoint hit)
-{
-  vec3 gradient;
-  for (int axis = 0; axis < 3; ++axis)
+  FindSamples(hit.Cell);
+  float corners[8];
+  for (int n = 0; n < 8; ++n)
   {
-    ivec3 step = ivec3(equal(ivec3(axis), ivec3(0, 1, 2)));
-    gradient[axis] =
-      Interpolate(around, hit.Cell + step, hit.Local) - Interpolate(around, hit.Cell - step, hit.Local);
+    corners[n] = Sample(1 + (n & 1), 1 + ((n >> 1) & 1), 1 + (n >> 2));
+  }
+  vec3 gradient = vec3(0.0);
+  for (int n = 0; n < 8; ++n)
+  {
+    ivec3 side = ivec3(n) >> ivec3(0, 1, 2) & 1;
+    ivec3 own = 1 + side;
+    ivec3 outer = 3 * side;
+    vec3 beyond =
+      vec3(Sample(outer.x, own.y, own.z), Sample(own.x, outer.y, own.z), Sample(own.x, own.y, outer.z));
+    vec3 across = vec3(corners[n ^ 1], corners[n ^ 2], corners[n ^ 4]);
+    vec3 difference = (beyond - across) * vec3(2 * side - 1);
+    vec3 weight = mix(1.0 - hit.Local, hit.Local, vec3(side));
+    gradient += weight.x * weight.y * weight.z * difference;
   }
   return gradient;
 }
@@ -106,7 +115,7 @@ vec3 Shade(uint pixel)
   vec3 direction =
     scene.EyeDirection[0].xyz + xy.x * scene.EyeDirection[1].xyz + xy.y * scene.EyeDirection[2].xyz;
   vec3 toViewer = -normalize(direction);
-  vec3 normal = ViewNormal(Gradient(FindNeighbourhood(hit.Cell), hit), toViewer);
+  vec3 normal = ViewNormal(Gradient(hit), toViewer);
   return Illuminate(origin + float(hit.T) * direction, normal, toViewer);
 }
 
