@@ -24,8 +24,9 @@
 namespace
 {
 /**
- * Draws its volume mapper in the opaque pass. ParaView's own class draws it in the volumetric pass, after translucent
- * geometry, and only when the input has scalars, which a compressed volume has not.
+ * Draws its volume mapper in the opaque pass. ParaView's own class draws it in the volumetric pass,
+ * after translucent geometry, and only when the input has scalars, which a compressed volume has
+ * not.
  */
 class vtkPVOpaqueLODVolume : public vtkPVLODVolume
 {
@@ -89,7 +90,8 @@ int vtkProgressiveIsosurfaceRepresentation::ProcessViewRequest(
   }
   if (requestType == vtkPVView::REQUEST_UPDATE())
   {
-    // The superclass asks for ordered compositing, as translucent volumes need it; opaque surfaces composite by depth.
+    // The superclass asks for ordered compositing, as translucent volumes need it; opaque surfaces
+    // composite by depth.
     outInfo->Remove(vtkPVRenderView::NEED_ORDERED_COMPOSITING());
     vtkPVRenderView::SetGeometryBounds(inInfo, this, this->DataBounds, this->Actor->GetMatrix());
   }
@@ -115,8 +117,9 @@ bool vtkProgressiveIsosurfaceRepresentation::FindDrawnArray()
   vtkImageData* image = vtkImageData::SafeDownCast(this->Cache);
   if (!image)
   {
-    vtkErrorMacro("Progressive Isosurface shows image data only; use the filter Resample To Image, or Extract "
-                  "Block for one image of a composite data set.");
+    vtkErrorMacro(
+      "Progressive Isosurface shows image data only; use the filter Resample To Image, or Extract "
+      "Block for one image of a composite data set.");
     return false;
   }
   return vtkCompressedVolume::IsCompressed(image) ? this->FindCompressedArray(image)
@@ -178,8 +181,8 @@ bool vtkProgressiveIsosurfaceRepresentation::IsColoredByDrawnArray()
 //------------------------------------------------------------------------------
 void vtkProgressiveIsosurfaceRepresentation::UpdateMapperParameters()
 {
-  // Nothing here may touch a modified time without need: ParaView calls this before every image, and a mapper that
-  // believes its scene changed starts its refinement anew.
+  // Nothing here may touch a modified time without need: ParaView calls this before every image,
+  // and a mapper that believes its scene changed starts its refinement anew.
   this->VolumeMapper->SelectScalarArray(this->DrawnArray.Name.c_str());
   this->VolumeMapper->SetScalarMode(
     this->DrawnArray.Association == vtkDataObject::FIELD_ASSOCIATION_CELLS

@@ -4,10 +4,11 @@
  * @class   vtkProgressiveIsosurfaceRepresentation
  * @brief   ParaView representation of image data as a progressive isosurface
  *
- * Shows plain image data and compressed volumes (see vtkCompressedVolume) through vtkProgressiveIsosurfaceMapper. The surface is
- * opaque, so it is drawn in the opaque pass, where translucent geometry blends over it, and it asks for no ordered
- * compositing. Colour: the colour map at the isovalue when the representation is coloured by the array that is drawn,
- * the solid colour otherwise.
+ * Shows plain image data and compressed volumes (see vtkCompressedVolume) through
+ * vtkProgressiveIsosurfaceMapper. The surface is opaque, so it is drawn in the opaque pass, where
+ * translucent geometry blends over it, and it asks for no ordered compositing. Colour: the colour
+ * map at the isovalue when the representation is coloured by the array that is drawn, the solid
+ * colour otherwise.
  *
  * Image data only: rectilinear grids and composite data are refused with an error.
  */
@@ -36,8 +37,9 @@ public:
     vtkInformation* outInfo) override;
 
   /**
-   * The array to draw an isosurface of, in plain image data; empty: the active scalars. A compressed volume holds
-   * one array and ignores this. The signature is that of ParaView's array selection properties.
+   * The array to draw an isosurface of, in plain image data; empty: the active scalars. A
+   * compressed volume holds one array and ignores this. The signature is that of ParaView's array
+   * selection properties.
    */
   void SetIsosurfaceArray(int index, int port, int connection, int association, const char* name);
 
@@ -55,8 +57,8 @@ public:
 
   ///@{
   /**
-   * Forwarded to the mapper: bits per voxel for plain data, speculation on or off, and the block cache's limit in
-   * mebibytes (0: automatic).
+   * Forwarded to the mapper: bits per voxel for plain data, speculation on or off, and the block
+   * cache's limit in mebibytes (0: automatic).
    */
   void SetRate(double bitsPerVoxel);
   void SetSpeculation(bool on);
@@ -64,7 +66,8 @@ public:
   ///@}
 
   ///@{
-  /// Statistics of the last image, for the information properties (bytes as double: ParaView's panel shows no 64-bit integers).
+  /// Statistics of the last image, for the information properties (bytes as double: ParaView's
+  /// panel shows no 64-bit integers).
   int GetNumberOfPasses();
   double GetCompletedFraction();
   double GetTotalMilliseconds();

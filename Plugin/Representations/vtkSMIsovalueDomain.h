@@ -4,9 +4,10 @@
  * @class   vtkSMIsovalueDomain
  * @brief   range of the values that an isovalue can take
  *
- * For plain image data the range is that of the chosen array (the required property "ArraySelection"), as
- * vtkSMArrayRangeDomain finds it. A compressed volume has no such array: its range is that of the
- * original values, which it carries as field data. Without either the domain is empty.
+ * For plain image data the range is that of the chosen array (the required property
+ * "ArraySelection"), as vtkSMArrayRangeDomain finds it. A compressed volume has no such array: its
+ * range is that of the original values, which it carries as field data. Without either the domain
+ * is empty.
  */
 
 #ifndef vtkSMIsovalueDomain_h
@@ -31,7 +32,8 @@ protected:
   ~vtkSMIsovalueDomain() override = default;
 
 private:
-  /// The compressed volume's range as ParaView has gathered it, or nullptr when the input is no compressed volume.
+  /// The compressed volume's range as ParaView has gathered it, or nullptr when the input is no
+  /// compressed volume.
   vtkPVArrayInformation* FindCompressedRange();
 
   vtkSMIsovalueDomain(const vtkSMIsovalueDomain&) = delete;

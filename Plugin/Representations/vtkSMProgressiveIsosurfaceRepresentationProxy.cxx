@@ -26,8 +26,8 @@ void vtkSMProgressiveIsosurfaceRepresentationProxy::ViewUpdated(vtkSMProxy* view
   }
   this->StopObserving();
   this->View = view;
-  this->ImageObserver =
-    view->AddObserver(vtkCommand::EndEvent, this, &vtkSMProgressiveIsosurfaceRepresentationProxy::OnImage);
+  this->ImageObserver = view->AddObserver(
+    vtkCommand::EndEvent, this, &vtkSMProgressiveIsosurfaceRepresentationProxy::OnImage);
 }
 
 //------------------------------------------------------------------------------

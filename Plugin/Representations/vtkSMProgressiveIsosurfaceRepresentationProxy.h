@@ -4,8 +4,9 @@
  * @class   vtkSMProgressiveIsosurfaceRepresentationProxy
  * @brief   keeps the figures of a progressive isosurface up to date
  *
- * ParaView asks a representation for its information properties when its data change. Passes, completed fraction and
- * times change with every image instead, so this proxy asks after each image of the view that shows it.
+ * ParaView asks a representation for its information properties when its data change. Passes,
+ * completed fraction and times change with every image instead, so this proxy asks after each image
+ * of the view that shows it.
  */
 
 #ifndef vtkSMProgressiveIsosurfaceRepresentationProxy_h
@@ -33,7 +34,8 @@ private:
   /// After an image of the view.
   void OnImage();
 
-  /// Whether this is how the data are shown: as one of several representations, of which one is active.
+  /// Whether this is how the data are shown: as one of several representations, of which one is
+  /// active.
   bool IsActive();
 
   void StopObserving();
