@@ -86,30 +86,27 @@ bool BlockStraddles(vec2 coarse, uint coarseIndex, ivec3 block)
 #endif
 #endif
 
-// The block the ray is in when it enters the volume.
+// Where the ray crosses the plane behind which it leaves `block`, at or before parameter t, it moves on.
+ivec3 Crossed(Ray ray, ivec3 block, double t)
+{
+  return ivec3(lessThanEqual(PlanesT(ray, ExitPlanes(ray, block, 4)), dvec3(t))) * ray.Step;
+}
+
+// The block the ray is in when it enters the volume: a rounded guess, which the planes put right.
 ivec3 FirstBlock(Ray ray)
 {
   ivec3 last = LastCellBlock();
   dvec3 p = ray.Origin + ray.Enter * ray.Direction;
   ivec3 block = ivec3(clamp(floor(p / 4.0LF), dvec3(0.0LF), dvec3(last)));
-  for (int axis = 0; axis < 3; ++axis)
+  for (int i = 0; i < 2; ++i)
   {
-    // the guess above is rounded: let the planes decide
-    int step = ray.Step[axis];
-    int exitSide = (1 + step) / 2;
-    int b = block[axis];
-    while (b >= 0 && b <= last[axis] && PlaneT(ray, axis, 4 * (b + exitSide)) <= ray.Enter)
-    {
-      b += step;
-    }
-    while (b - step >= 0 && b - step <= last[axis] &&
-      PlaneT(ray, axis, 4 * (b - step + exitSide)) > ray.Enter)
-    {
-      b -= step;
-    }
-    block[axis] = clamp(b, 0, last[axis]);
+    block -= ivec3(greaterThan(PlanesT(ray, EntryPlanes(ray, block, 4)), dvec3(ray.Enter))) * ray.Step;
   }
-  return block;
+  for (int i = 0; i < 2; ++i)
+  {
+    block += Crossed(ray, block, ray.Enter);
+  }
+  return clamp(block, ivec3(0), last);
 }
 
 // One step of the walk over blocks; false where the ray has left the volume.
@@ -121,7 +118,7 @@ bool NextBlock(Ray ray, inout ivec3 block)
   {
     return false;
   }
-  block += ivec3(lessThanEqual(exits, dvec3(t))) * ray.Step;
+  block += Crossed(ray, block, t);
   return InGrid(block);
 }
 
@@ -135,19 +132,13 @@ bool SkipCoarseCell(Ray ray, inout ivec3 block)
   {
     return false;
   }
-  for (int axis = 0; axis < 3; ++axis)
+  ivec3 within = block;
+  for (int i = 0; i < 3; ++i)
   {
-    int step = ray.Step[axis];
-    int exitSide = (1 + step) / 2;
-    if (exits[axis] <= t)
-    {
-      block[axis] = step > 0 ? 4 * coarse[axis] + 4 : 4 * coarse[axis] - 1;
-      continue;
-    }
-    for (int i = 0; i < 3 && PlaneT(ray, axis, 4 * (block[axis] + exitSide)) <= t; ++i)
-    {
-      block[axis] += step;
-    }
+    within += Crossed(ray, within, t);
   }
+  // on the axes where it leaves the coarse cell it comes to the first block behind it
+  ivec3 behind = 4 * coarse - 1 + 5 * (1 + ray.Step) / 2;
+  block = within + (behind - within) * ivec3(lessThanEqual(exits, dvec3(t)));
   return InGrid(block);
 }

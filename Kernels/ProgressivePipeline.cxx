@@ -63,7 +63,7 @@ std::string AttachShader(GLuint program, GLenum type, const std::string& source)
 //------------------------------------------------------------------------------
 bool ProgressivePipeline::Fail(const std::string& message)
 {
-  this->Error = message;
+  this->Error = this->Error.empty() ? message : this->Error; // what comes later follows from the first
   return false;
 }
 
@@ -155,6 +155,7 @@ void ProgressivePipeline::Release()
     glDebugMessageCallback(nullptr, nullptr); // the counter goes away with this object
   }
   this->TimeQueries.clear();
+  this->Error.clear();
   this->SceneBuffer = 0;
   this->VertexArray = 0;
   this->Extent = PipelineExtent();

@@ -15,13 +15,7 @@ struct Ray
   double Enter, Leave; // parameters at which the ray enters and leaves the volume
 };
 
-// Parameter at which the ray crosses plane `index` of `axis`.
-double PlaneT(Ray ray, int axis, int index)
-{
-  precise double t = (double(index) - ray.Origin[axis]) * ray.Inverse[axis];
-  return t;
-}
-
+// Parameters at which the ray crosses the plane of this index on each axis.
 dvec3 PlanesT(Ray ray, ivec3 index)
 {
   precise dvec3 t = (dvec3(index) - ray.Origin) * ray.Inverse;
@@ -38,6 +32,12 @@ double LargestOf(dvec3 v)
   return max(v.x, max(v.y, v.z));
 }
 
+// Parallel rays: planes ahead are never reached, planes behind were crossed long ago.
+double FiniteInverse(double d)
+{
+  return abs(d) > 1e-290LF ? 1.0LF / d : 1e290LF;
+}
+
 // The ray through the centre of a pixel, numbered in rows from the bottom left (section 3.2).
 Ray CameraRay(uint pixel)
 {
@@ -49,13 +49,8 @@ Ray CameraRay(uint pixel)
     scene.RayDirection[0].xyz + x * scene.RayDirection[1].xyz + y * scene.RayDirection[2].xyz;
   ray.Origin = origin;
   ray.Direction = direction;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    double d = direction[axis];
-    ray.Step[axis] = d < 0.0LF ? -1 : 1;
-    // parallel rays: planes ahead are never reached, planes behind were crossed long ago
-    ray.Inverse[axis] = abs(d) > 1e-290LF ? 1.0LF / d : 1e290LF;
-  }
+  ray.Inverse = dvec3(FiniteInverse(direction.x), FiniteInverse(direction.y), FiniteInverse(direction.z));
+  ray.Step = 1 - 2 * ivec3(lessThan(direction, dvec3(0.0LF)));
   dvec3 first = PlanesT(ray, ivec3(0));
   dvec3 last = PlanesT(ray, scene.Samples.xyz - 1);
   ray.Enter = max(LargestOf(min(first, last)), scene.RayRange.x);
