@@ -56,7 +56,7 @@ void Fill(uint entry, uint block)
 // Makes sure that the block is cached at the end of this pass and marks it as used now.
 bool Activate(uint block)
 {
-  uint entry = InsertEntry(block);
+  uint entry = InsertEntry(block, scene.Cache.y);
   if (entry == NONE)
   {
     return false;

@@ -1,7 +1,7 @@
 // The map from a block to its cache slot: a hash table with linear probing, sized by the cache. Entries
 // are only ever added during a pass; CacheRebuild.comp makes the table anew after an eviction.
 
-#define MAX_PROBES 64u
+#define MAX_PROBES 256u
 
 uint MapStart(uint block)
 {
@@ -39,8 +39,8 @@ uint FindEntry(uint block)
   return NONE;
 }
 
-// The block's entry, added where it had none; NONE if the table is too full.
-uint InsertEntry(uint block)
+// The block's entry, added where it had none and fewer than `most` are in use; NONE if the table is too full.
+uint InsertEntry(uint block, uint most)
 {
   uint entry = MapStart(block);
   for (uint i = 0u; i < MAX_PROBES; ++i)
@@ -48,12 +48,21 @@ uint InsertEntry(uint block)
     uint key = cacheMap[entry].Block;
     if (key == NONE)
     {
+      if (control.MapUsed >= most)
+      {
+        return NONE;
+      }
+      if (atomicAdd(control.MapUsed, 1u) >= most)
+      {
+        atomicAdd(control.MapUsed, ~0u);
+        return NONE;
+      }
       key = atomicCompSwap(cacheMap[entry].Block, NONE, block);
       if (key == NONE)
       {
-        atomicAdd(control.MapUsed, 1u);
         return entry;
       }
+      atomicAdd(control.MapUsed, ~0u); // another was first
     }
     if (key == block)
     {

@@ -14,7 +14,7 @@ void main()
   for (uint slot = gl_GlobalInvocationID.x; slot < scene.Cache.x; slot += stride)
   {
     uint block = cacheSlotBlock[slot];
-    uint entry = block == NONE ? NONE : InsertEntry(block);
+    uint entry = block == NONE ? NONE : InsertEntry(block, scene.Cache.y);
     if (entry == NONE)
     {
       cacheSlotBlock[slot] = NONE;

@@ -3,7 +3,7 @@
 // Asks for a block and those of its neighbours in `needs`; the first to ask lists it as visible.
 uint MarkBlock(uint block, uint needs)
 {
-  uint entry = InsertEntry(block);
+  uint entry = InsertEntry(block, scene.Cache.y / 4u * 3u); // the rest is for what blocks need beside them
   if (entry == NONE)
   {
     atomicAdd(control.DeferredBlocks, 1u);

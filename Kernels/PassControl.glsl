@@ -43,7 +43,7 @@ void PlanEviction()
 {
   bool whole = scene.Cache.x >= uint(scene.Blocks.w);
   bool full = !whole && control.DeferredBlocks > 0u && control.FreeSlots < scene.Cache.x / 4u;
-  bool stale = !whole && control.MapUsed > scene.Cache.y / 4u * 3u;
+  bool stale = !whole && control.MapUsed > scene.Cache.y / 8u * 5u; // cached blocks take half at most
   control.EvictGroups.X = full || stale ? GroupsFor(scene.Cache.y, 256u) : 0u;
   if (full || stale)
   {

@@ -124,15 +124,16 @@ bool ProgressivePipeline::Initialize()
   {
     return false;
   }
-  this->Fill(Buffer::Control, 0);
-  // one group on the y and z axes of every indirect dispatch
-  for (std::size_t offset = offsetof(ControlBlock, TraverseGroups); offset < offsetof(ControlBlock, Ages);
-       offset += sizeof(DispatchArguments))
+  ControlBlock control = {};
+  control.PassSerial = 1;
+  for (DispatchArguments* groups : { &control.TraverseGroups, &control.PairGroups, &control.AdmitGroups,
+         &control.DecodeGroups, &control.IntersectGroups, &control.EvictGroups })
   {
-    this->WriteControl(offset + offsetof(DispatchArguments, Y), 1);
-    this->WriteControl(offset + offsetof(DispatchArguments, Z), 1);
+    *groups = { 0, 1, 1, 0 };
   }
-  this->WriteControl(offsetof(ControlBlock, PassSerial), 1);
+  glBindBuffer(GL_SHADER_STORAGE_BUFFER, this->Names[Index(Buffer::Control)]);
+  glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof(control), &control);
+  glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
   return true;
 }
 
@@ -556,9 +557,9 @@ void ProgressivePipeline::ShadeHits(bool again)
   do
   {
     this->Dispatch(Stage::BeginShading, 1);
+    this->EvictBlocks(); // also where nothing is looked up: BeginShading may have planned it
     if (this->Scene.Lighting[0] > 0)
     {
-      this->EvictBlocks();
       this->Dispatch(Stage::MarkShading, groups);
       this->DispatchIndirect(Stage::AdmitBlocks, offsetof(ControlBlock, AdmitGroups));
       this->DispatchIndirect(Stage::DecodeBlocks, offsetof(ControlBlock, DecodeGroups));
