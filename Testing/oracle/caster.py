@@ -183,6 +183,8 @@ class _Grid:
         error = slack.value * FLOAT32_ULP * largest + slack.position * (high - low)
         # Bit 0: a ray that started inside can get out here. Bit 1: one that started outside can get in.
         matters = (low <= error).astype(np.uint8) | ((high >= -error).astype(np.uint8) << 1)
+        # Bits 2 and 3: the same without any error. A cell at or above the isovalue throughout is not left for rounding's sake.
+        matters |= ((low < 0).astype(np.uint8) << 2) | ((high >= 0).astype(np.uint8) << 3)
         self.excess = excess.ravel()
         self.error = self._pad(error)
         self.matters = self._pad(matters)
@@ -329,6 +331,8 @@ class _Walk:
         for row, threshold in enumerate((error, np.zeros_like(error), -error)):
             # Equal to the isovalue is inside: reached from outside, not left from inside.
             crossed = np.where((side > 0) & (threshold == 0), values < threshold, values <= threshold)
+            if row == 1:
+                crossed &= (self.grid.matters[self.index[rays]] & np.where(side > 0, 4, 8)) != 0
             new = np.flatnonzero(crossed.any(axis=0) & (self.hits[row, rays] == np.inf))
             if len(new):
                 s = _first_root(cubic[:, new], knots[:, new], crossed[:, new], threshold[new])
