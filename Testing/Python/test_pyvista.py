@@ -66,8 +66,8 @@ def test_marschner_lobb(plotter, check):
 def test_among_meshes(plotter, check):
     """A mesh cuts through the surface, another shines through."""
     plotter.progiso.add_isosurface(grid(blobs((40, 40, 40), 2)), 0.1, color="ivory", rate=8)
-    plotter.add_mesh(pyvista.Sphere(12, (28, 12, 24)), color="steelblue", smooth_shading=True)
-    plotter.add_mesh(pyvista.Box((-5, 45, 18, 20, -5, 45)), color="crimson", opacity=0.4)
+    plotter.add_mesh(pyvista.Sphere(radius=12, center=(28, 12, 24)), color="steelblue", smooth_shading=True)
+    plotter.add_mesh(pyvista.Box(bounds=(-5, 45, 18, 20, -5, 45)), color="crimson", opacity=0.4)
     plotter.camera_position = [(110, -60, 70), (20, 20, 20), (0, 0, 1)]
     check("among-meshes")
 
@@ -101,7 +101,7 @@ def test_isovalue_can_be_changed(plotter, check):
 
 
 @pytest.mark.parametrize("name, isovalue, position, up", [
-    ("ct-cranium", 226, (0.3, -1, 0.2), (0, 0, 1)),
+    ("ct-cranium", 226, (0.3, 1, 0.2), (0, 0, 1)),
     ("mri-brain", 45, (-0.6, 0.5, 0.6), (0, 0, 1)),
 ])  # fmt: skip
 def test_scans(plotter, check, name, isovalue, position, up):

@@ -46,10 +46,10 @@ def test_passes_add_up(scene):
         assert p["visible_blocks"] <= p["pairs"] or p["pairs"] == 0
         assert p["visible_blocks"] <= p["active_blocks"] <= 16**3
         assert p["decoded_blocks"] <= p["active_blocks"]
-        assert p["elapsed_ms"] >= 0
     assert sum(p["pairs"] for p in passes) >= np.isfinite(scene.rays).sum()
     assert sum(p["decoded_blocks"] for p in passes) >= max(p["active_blocks"] for p in passes)
-    assert 0 < sum(p["elapsed_ms"] for p in passes) <= statistics["total_ms"] * 1.01 + 1
+    elapsed = [p["elapsed_ms"] for p in passes]
+    assert elapsed == sorted(elapsed) and 0 < elapsed[0] and elapsed[-1] <= statistics["total_ms"]
 
 
 def test_table_says_the_same(scene):
@@ -95,6 +95,8 @@ def test_nothing_to_see():
     image = progiso.compress(make_image(marschner_lobb(24)))
     away = Scene(image, 0.5, Camera((100, 100, 100), (200, 200, 200)))
     out = Scene(image, 7.0, Camera((60, 60, 60), (12, 12, 12)))
+    # VTK would not even ask the mapper for what it finds out of sight.
+    away.renderer.GetCullers().RemoveAllItems()
     for scene in (away, out):
         assert not np.isfinite(scene.depth()).any()
         statistics = scene.statistics()
