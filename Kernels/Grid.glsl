@@ -118,7 +118,7 @@ bool NextBlock(Ray ray, inout ivec3 block)
   {
     return false;
   }
-  block += Crossed(ray, block, t);
+  block += ivec3(lessThanEqual(exits, dvec3(t))) * ray.Step;
   return InGrid(block);
 }
 

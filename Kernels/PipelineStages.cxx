@@ -69,13 +69,17 @@ const std::vector<std::string>& RequiredExtensions()
 
 std::string AssembleShader(const std::string& file, const StageInfo& stage, bool byExtensions)
 {
-  // functions and objects only; the compiler knows these by another name or not at all
-  static const std::set<std::string> unknownToGLSL = { "GL_ARB_clear_buffer_object", "GL_ARB_timer_query" };
+  // some bring functions only, and only a compute shader may name its own
+  std::set<std::string> unnamed = { "GL_ARB_clear_buffer_object", "GL_ARB_timer_query" };
+  if (stage.Id == Stage::Composite)
+  {
+    unnamed.insert("GL_ARB_compute_shader");
+  }
   std::ostringstream out;
   out << (byExtensions ? "#version 150\n" : "#version 430\n");
   for (const std::string& extension : RequiredExtensions())
   {
-    if (byExtensions && !unknownToGLSL.count(extension))
+    if (byExtensions && !unnamed.count(extension))
     {
       out << "#extension " << extension << " : require\n";
     }

@@ -14,7 +14,8 @@ constexpr std::int64_t MinimumSlots = 128;              // a quarter of it admit
 constexpr std::int64_t LargestBuffer = 2147483647;      // bytes of one SSBO binding on NVIDIA
 constexpr std::int64_t AutomaticCacheBytes = 1LL << 30; // upper bound where the user sets none
 constexpr std::int64_t MaximumGroups = 65535;
-constexpr int PassesPerBatch = 4; // submitted before the CPU asks how many rays are left
+constexpr int PassesPerBatch = 4;  // submitted before the CPU asks how many rays are left
+constexpr int PatienceWithNone = 16; // passes or shading rounds that get nowhere before we give up
 
 int Index(Buffer buffer)
 {
@@ -525,6 +526,7 @@ void ProgressivePipeline::RunPasses(int maximum, bool eager, const std::function
 {
   const int batch = eager || this->SoftwareRenderer ? 1 : PassesPerBatch;
   int left = maximum > 0 ? maximum : -1;
+  int stalled = 0;
   while (this->Remaining > 0 && left != 0)
   {
     const int passes = left > 0 ? std::min(batch, left) : batch;
@@ -534,7 +536,13 @@ void ProgressivePipeline::RunPasses(int maximum, bool eager, const std::function
     }
     left = left > 0 ? left - passes : left;
     const ControlBlock control = this->Read<ControlBlock>(Buffer::Control);
+    const bool gotOn = control.Pairs > 0 || control.NextLiveRays != this->Remaining;
     this->Remaining = control.NextLiveRays;
+    stalled = gotOn ? 0 : stalled + 1;
+    if (stalled == PatienceWithNone)
+    {
+      this->Fail("makes no progress: the GPU may have been lost; release the graphics resources and render again");
+    }
     if (control.PassIndex - this->Passes.size() > PassRecords / 2)
     {
       this->ReadPassRecords();
@@ -554,6 +562,7 @@ void ProgressivePipeline::ShadeHits(bool again)
   }
   const std::int64_t groups = DivideUp(this->Extent.Pixels, 64);
   std::uint32_t unshaded = 0;
+  int stalled = 0;
   do
   {
     this->Dispatch(Stage::BeginShading, 1);
@@ -565,7 +574,13 @@ void ProgressivePipeline::ShadeHits(bool again)
       this->DispatchIndirect(Stage::DecodeBlocks, offsetof(ControlBlock, DecodeGroups));
     }
     this->Dispatch(Stage::ShadeHits, groups);
+    const std::uint32_t before = unshaded;
     unshaded = this->Read<ControlBlock>(Buffer::Control).UnshadedHits;
+    stalled = unshaded == before ? stalled + 1 : 0;
+    if (unshaded > 0 && stalled == PatienceWithNone)
+    {
+      this->Fail("cannot shade: the GPU may have been lost; release the graphics resources and render again");
+    }
   } while (unshaded > 0 && this->Error.empty() && this->GrowCache());
   this->ReadPassRecords();
 }

@@ -31,6 +31,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <tuple>
 
 //------------------------------------------------------------------------------
 // What the mapper holds behind its interface
@@ -62,9 +63,9 @@ public:
 
   vtkSmartPointer<vtkImageData> Compressed; // the input, or what it was compressed to
   vtkNew<vtkCompressedVolume> Volume;
-  vtkWeakPointer<vtkImageData> Source; // what Compressed was made from, when, and how
-  vtkMTimeType SourceTime = 0;
-  double SourceRate = 0.0;
+  // what Compressed was made from, when, and how: image, array, rate, component
+  using SourceKey = std::tuple<vtkImageData*, vtkMTimeType, vtkDataArray*, vtkMTimeType, double, int>;
+  SourceKey Source;
   vtkTimeStamp VolumeTime; // of Compressed; the GPU has the one of UploadTime
   vtkTimeStamp UploadTime;
 
@@ -142,7 +143,7 @@ vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceMapper::Internals::Compres
 void vtkProgressiveIsosurfaceMapper::Internals::ReleaseInput()
 {
   this->Compressed = nullptr;
-  this->Source = nullptr;
+  this->Source = SourceKey();
 }
 
 // Makes sure that Compressed and Volume are those of the present input; compresses a plain one.
@@ -166,9 +167,10 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateVolume()
   {
     return this->Report("the input image has no scalars: select an array that it has");
   }
-  vtkMTimeType time = image->GetMTime();
-  time = std::max(time, array ? std::max(array->GetMTime(), self->GetMTime()) : 0);
-  if (this->Compressed && this->Source == image && this->SourceTime == time)
+  // of the mapper's own parameters only these make a plain image another volume
+  const SourceKey key = { image, image->GetMTime(), array, array ? array->GetMTime() : 0, array ? self->Rate : 0.0,
+    array ? self->Component : 0 };
+  if (this->Compressed && key == this->Source)
   {
     return true;
   }
@@ -179,8 +181,7 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateVolume()
     return compressed ? this->Report(this->Volume->GetErrorMessage()) : false; // the filter has told why
   }
   this->Compressed = volume;
-  this->Source = image;
-  this->SourceTime = time;
+  this->Source = key;
   this->VolumeTime.Modified();
   return true;
 }
