@@ -94,37 +94,6 @@ def test_ways_to_the_same_picture(shown):
     assert all(np.array_equal(first, other) for other in others)
 
 
-# --- what else ParaView does with it: each script checks itself, with what it prints last as the proof that it got there --------
-
-SCRIPTS = ["show_plain", "show_compressed", "cell_data", "opaque", "zfp_files", "errors", "interactive"]
-
-
-def run_script(name, build, packages, folder):
-    output = under_x("pvpython", HERE / "paraview_scripts" / f"{name}.py", build, folder, python_path=[packages])
-    closing = [json.loads(line) for line in output.splitlines() if line.startswith("{")]
-    assert len(closing) == 1 and closing[0], output[-3000:]
-
-
-@pytest.mark.parametrize("name", SCRIPTS)
-def test_script(name, build, packages, tmp_path):
-    run_script(name, build, packages, tmp_path)
-
-
-def test_state(build, packages, tmp_path):
-    """A saved state shows the same picture in another process."""
-    run_script("state_save", build, packages, tmp_path)
-    run_script("state_load", build, packages, tmp_path)
-
-
-def test_window(build, tmp_path):
-    """ParaView's own window loads the plugin and completes the image."""
-    environment = {k: v for k, v in os.environ.items() if k not in ("VTK_DEFAULT_OPENGL_WINDOW", "PYTHONPATH", "VIRTUAL_ENV")}
-    command = ["bash", str(HERE / "paraview_scripts" / "gui.sh"), str(build), str(tmp_path), f":{next(displays)}"]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=400)
-    assert done.returncode == 0, (done.stdout + done.stderr)[-6000:]
-    assert np.ptp(pictures.read_png(tmp_path / "gui_window.png")) > 100
-
-
 # --- the other tests, with ParaView's VTK and Python ------------------------------------------------------------------------------
 
 CORE = {

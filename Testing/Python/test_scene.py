@@ -1,12 +1,14 @@
 """The isosurface among other things: depth buffer, opaque and translucent geometry, light, several volumes."""
 
+import ctypes
+
 import numpy as np
 import progiso
 import pytest
 import tolerances
 from oracle.caster import Camera, cast
 from scenes import Scene, orbit
-from support import blobs, make_image, reference_volume
+from support import blobs, make_image, noise, reference_volume, vtk_messages
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkFloatArray
 from vtkmodules.vtkFiltersSources import vtkPlaneSource
@@ -203,12 +205,38 @@ def test_viewports(image):
     assert np.ptp(picture[:, 80:].reshape(-1, 3), axis=0).max() > 50
 
 
-def test_errors_name_what_is_wrong():
-    """Rendering without a usable input is one error, not a crash."""
-    from support import noise, vtk_messages
+def test_gl_errors_are_counted(image):
+    """The count that every scene's render is checked by does count: an error made on purpose shows in it."""
+    scene = Scene(image, ISOVALUE, orbit(reference_volume(image), 1, 4), SIZE)
+    scene.render()
+    library = {"vtkOSOpenGLRenderWindow": "libOSMesa.so.8", "vtkEGLRenderWindow": "libOpenGL.so.0"}.get(scene.window.GetClassName(), "libGL.so.1")
+    scene.window.MakeCurrent()
+    ctypes.CDLL(library).glEnable(0xFFFF)
+    assert scene.mapper.GetNumberOfGLErrors() == 1
 
-    for bad in (make_image(noise((1, 8, 8))), make_image(np.full((4, 4, 4), np.nan))):
-        scene = Scene(bad, 0.0, Camera((30, 30, 30), (4, 4, 4)))
+
+BAD = {
+    "flat": lambda: make_image(noise((1, 8, 8))),
+    "nan": lambda: make_image(np.full((4, 4, 4), np.nan)),
+    "truncated": lambda: truncated(progiso.compress(make_image(noise((8, 8, 8))))),
+}
+
+
+def truncated(image):
+    stream = image.GetFieldData().GetAbstractArray("ProgIso.ZFP.Stream")
+    stream.SetNumberOfValues(stream.GetNumberOfValues() // 2)
+    return image
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_errors_name_what_is_wrong(name):
+    """Rendering without a usable input says so and shows the background, however often it is asked."""
+    scene = Scene(BAD[name](), 0.0, Camera((30, 30, 30), (4, 4, 4)))
+    for _ in range(2):
         with vtk_messages() as messages:
             scene.window.Render()
-        assert any("vtkProgressiveIsosurfaceMapper" in m or "vtkImageZFPCompress" in m for m in messages)
+    assert np.ptp(scene.picture().reshape(-1, 3), axis=0).max() == 0
+    scene = Scene(BAD[name](), 0.0, Camera((30, 30, 30), (4, 4, 4)))
+    with vtk_messages() as messages:
+        scene.window.Render()
+    assert any("vtkProgressiveIsosurfaceMapper" in m or "vtkImageZFPCompress" in m for m in messages), messages
