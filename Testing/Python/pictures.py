@@ -44,4 +44,6 @@ def check_picture(pixels, name, config, folder):
     share, mean = np.mean(difference > tolerances.IMAGE_LEVELS), difference.mean()
     if share > tolerances.IMAGE_PIXELS or mean > tolerances.IMAGE_MEAN:
         write_png(pixels, folder / f"{name}.png")
-        raise AssertionError(f"{share:.2%} of the pixels differ, {mean:.2f} grey levels on average: see {folder / name}.png, {path}")
+        raise AssertionError(
+            f"{share:.2%} of the pixels differ, {mean:.2f} grey levels on average: see {folder / name}.png, {path}"
+        )

@@ -118,7 +118,16 @@ def orbit(volume, i, n, view_angle=50.0, distance=1.5):
     return Camera(tuple(position), tuple(centre), view_angle=view_angle)
 
 
-def check_scene(image, isovalue, camera, size=(160, 120), user_matrix=None, grazing=tolerances.GRAZING_FRACTION, volume=None, **settings):
+def check_scene(
+    image,
+    isovalue,
+    camera,
+    size=(160, 120),
+    user_matrix=None,
+    grazing=tolerances.GRAZING_FRACTION,
+    volume=None,
+    **settings,
+):
     """Render a scene of a compressed volume and hold its depth against the caster; return the scene."""
     scene = Scene(image, isovalue, camera, size, user_matrix, **settings)
     got = scene.depth()
@@ -135,7 +144,9 @@ def check_depth(depth, expected, grazing=tolerances.GRAZING_FRACTION):
     are close, which they must be for almost all, it must be the caster's hit within `tolerances.DEPTH_VOXELS`.
     """
     assert depth.dtype == np.float32 and depth.shape == expected.depth.shape
-    allowed = tolerances.DEPTH_VOXELS / expected.voxels + tolerances.DEPTH_RELATIVE * np.where(np.isfinite(depth), depth, 0)
+    allowed = tolerances.DEPTH_VOXELS / expected.voxels + tolerances.DEPTH_RELATIVE * np.where(
+        np.isfinite(depth), depth, 0
+    )
     possible = (depth >= expected.early - allowed) & (depth <= expected.late + allowed)
     _report("hits where none is possible, or misses where one is certain", ~possible, depth, expected)
 

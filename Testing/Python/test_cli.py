@@ -19,7 +19,11 @@ from test_statistics import check_memory
 def call(folder, *arguments, succeeds=True):
     """Run a command in a folder; return what it prints."""
     done = subprocess.run(
-        [sys.executable, "-m", "progiso", *map(str, arguments)], cwd=folder, capture_output=True, text=True, env=os.environ
+        [sys.executable, "-m", "progiso", *map(str, arguments)],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        env=os.environ,
     )
     assert (done.returncode == 0) == succeeds, done.stdout + done.stderr
     return done.stdout if succeeds else done.stderr
@@ -45,7 +49,9 @@ def test_compress_is_the_librarys(folder):
 
 def test_decompress(folder):
     call(folder, "decompress", "packed.vti", "unpacked.vti")
-    assert same_bits(values_of(progiso.read(folder / "unpacked.vti")), reference_values(progiso.read(folder / "packed.vti")))
+    assert same_bits(
+        values_of(progiso.read(folder / "unpacked.vti")), reference_values(progiso.read(folder / "packed.vti"))
+    )
 
 
 def test_info(folder):
@@ -58,7 +64,10 @@ def test_info(folder):
 def test_zfp_files(folder):
     call(folder, "compress", "plain.vti", "packed.zfp", "--rate", 6)
     subprocess.run(["zfp", "-q", "-h", "-z", "packed.zfp", "-o", "raw"], cwd=folder, check=True)
-    assert same_bits(np.fromfile(folder / "raw", np.float32).reshape(40, 36, 44), reference_values(progiso.read(folder / "packed.vti")))
+    assert same_bits(
+        np.fromfile(folder / "raw", np.float32).reshape(40, 36, 44),
+        reference_values(progiso.read(folder / "packed.vti")),
+    )
 
 
 def render(folder, file, *arguments):
@@ -78,7 +87,9 @@ def test_render(folder):
     check_depth(depth, cast(volume, 0.1, camera, (200, 150), tolerances.SLACK))
     assert statistics["converged"] and statistics["size"] == [200, 150]
     seen = statistics["camera"]
-    assert seen["position"] == pytest.approx(camera.position) and seen["focal_point"] == pytest.approx(camera.focal_point)
+    assert seen["position"] == pytest.approx(camera.position) and seen["focal_point"] == pytest.approx(
+        camera.focal_point
+    )
     assert seen["view_up"] == [0, 1, 0] and seen["view_angle"] == 50 and seen["parallel"] is False
     check_memory(image, statistics)
 
@@ -115,7 +126,9 @@ def test_render_in_parallel_projection(folder):
     seen = statistics["camera"]
     assert seen["parallel"] is True
     camera = Camera(seen["position"], seen["focal_point"], seen["view_up"], parallel_scale=seen["parallel_scale"])
-    check_depth(depth, cast(reference_volume(progiso.read(folder / "packed.vti")), 0.1, camera, (120, 90), tolerances.SLACK))
+    check_depth(
+        depth, cast(reference_volume(progiso.read(folder / "packed.vti")), 0.1, camera, (120, 90), tolerances.SLACK)
+    )
 
 
 @pytest.mark.parametrize("suffix", [".mha", ".nii.gz", ".vtk", ".nrrd"])

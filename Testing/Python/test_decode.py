@@ -9,7 +9,9 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkFloatArray
 from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
-EXTREMES = np.array([0.0, -0.0, 1.0, -1.0, 3.4e38, -3.4e38, 1.2e-38, 1e-45, -1e-45, 1e-40, 255, 65535, 1e10, np.pi], np.float32)
+EXTREMES = np.array(
+    [0.0, -0.0, 1.0, -1.0, 3.4e38, -3.4e38, 1.2e-38, 1e-45, -1e-45, 1e-40, 255, 65535, 1e10, np.pi], np.float32
+)
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +34,9 @@ def check(window, image):
     got = vtk_to_numpy(got)
     assert got.shape == expected.shape
     wrong = np.flatnonzero(got.view(np.uint32) != expected.view(np.uint32))
-    assert len(wrong) == 0, f"{len(wrong)} of {len(got)} samples, first at {wrong[0]}: {got[wrong[0]]!r}, not {expected[wrong[0]]!r}"
+    assert (
+        len(wrong) == 0
+    ), f"{len(wrong)} of {len(got)} samples, first at {wrong[0]}: {got[wrong[0]]!r}, not {expected[wrong[0]]!r}"
 
 
 def of(values, rate):
@@ -45,7 +49,9 @@ def test_all_rates(window, rate):
     check(window, of(marschner_lobb(14), rate))
 
 
-@pytest.mark.parametrize("bits", [9, 10, 11, 12, 15, 17, 31, 32, 33, 50, 63, 65, 77, 100, 127, 129, 257, 333, 511, 513, 1001, 1999, 2047])
+@pytest.mark.parametrize(
+    "bits", [9, 10, 11, 12, 15, 17, 31, 32, 33, 50, 63, 65, 77, 100, 127, 129, 257, 333, 511, 513, 1001, 1999, 2047]
+)
 def test_any_bits_per_block(window, bits):
     """Blocks that start and end anywhere within a word."""
     image = of(noise((9, 10, 11), bits), bits / 64)

@@ -35,7 +35,9 @@ def test_white_noise(seed):
     check_scene(image, rng.uniform(-0.5, 2.5), camera, grazing=tolerances.GRAZING_FRACTION_NOISE)
 
 
-@pytest.mark.parametrize("shape", [(2, 2, 2), (2, 9, 33), (5, 5, 5), (4, 4, 4), (8, 12, 16), (9, 13, 17), (3, 70, 6), (65, 2, 3)])
+@pytest.mark.parametrize(
+    "shape", [(2, 2, 2), (2, 9, 33), (5, 5, 5), (4, 4, 4), (8, 12, 16), (9, 13, 17), (3, 70, 6), (65, 2, 3)]
+)
 def test_shapes(shape):
     """Volumes of one cell, of one block, with partial blocks and partial groups of blocks on any side."""
     image = compressed(noise(shape, 11), 16)

@@ -7,7 +7,17 @@ import progiso
 import pytest
 from oracle import zfp_reference
 from progiso import vtkCompressedVolume, vtkImageZFPCompress, vtkImageZFPDecompress, vtkZFPReader, vtkZFPWriter
-from support import make_image, marschner_lobb, metadata, noise, reference_values, same_bits, stream_of, values_of, vtk_messages
+from support import (
+    make_image,
+    marschner_lobb,
+    metadata,
+    noise,
+    reference_values,
+    same_bits,
+    stream_of,
+    values_of,
+    vtk_messages,
+)
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkIntArray
 from vtkmodules.vtkCommonDataModel import vtkImageData
@@ -68,7 +78,10 @@ def test_scalar_types(kind, cells):
     values = (marschner_lobb(9) * 100).astype(kind)
     image = make_image(values, "name", cells)
     compressed = progiso.compress(image, 16)
-    assert metadata(compressed, "ScalarType")[0] == (image.GetCellData() if cells else image.GetPointData()).GetScalars().GetDataType()
+    assert (
+        metadata(compressed, "ScalarType")[0]
+        == (image.GetCellData() if cells else image.GetPointData()).GetScalars().GetDataType()
+    )
     assert stream_of(compressed).startswith(zfp_reference.encode(values, 16))
     assert list(metadata(compressed, "Range")) == [values.min(), values.max()]
     assert metadata(compressed, "Association")[0] == int(cells)
@@ -81,7 +94,9 @@ def test_scalar_types(kind, cells):
 
 def test_geometry_is_kept():
     rotation = np.linalg.qr(np.random.default_rng(0).normal(size=(3, 3)))[0]
-    image = make_image(noise((5, 6, 7)), origin=(1, -2, 3), spacing=(0.5, 2, 1), direction=rotation, extent_start=(4, -3, 10))
+    image = make_image(
+        noise((5, 6, 7)), origin=(1, -2, 3), spacing=(0.5, 2, 1), direction=rotation, extent_start=(4, -3, 10)
+    )
     for result in (progiso.compress(image), progiso.decompress(progiso.compress(image))):
         assert result.GetExtent() == image.GetExtent() == (4, 10, -3, 2, 10, 14)
         assert result.GetOrigin() == image.GetOrigin()
@@ -299,7 +314,10 @@ def test_reader_against_the_tool(tmp_path, header, rate, lacking):
     values.tofile(tmp_path / "raw")
     options = ["-h"] if header else []
     path = tmp_path / "volume.zfp"
-    subprocess.run(["zfp", "-q", *options, "-f", "-3", "7", "9", "6", "-r", str(rate), "-i", tmp_path / "raw", "-z", path], check=True)
+    subprocess.run(
+        ["zfp", "-q", *options, "-f", "-3", "7", "9", "6", "-r", str(rate), "-i", tmp_path / "raw", "-z", path],
+        check=True,
+    )
     reader = vtkZFPReader()
     reader.SetFileName(str(path))
     if not header:

@@ -30,7 +30,9 @@ def same(case, **settings):
     scene = Scene(image, isovalue, camera, **settings)
     depth = scene.depth()
     different = np.argwhere(depth.view(np.uint32) != expected.view(np.uint32))
-    assert len(different) == 0, f"{len(different)} pixels, first {different[0]}: {depth[tuple(different[0])]}, not {expected[tuple(different[0])]}"
+    assert (
+        len(different) == 0
+    ), f"{len(different)} pixels, first {different[0]}: {depth[tuple(different[0])]}, not {expected[tuple(different[0])]}"
     return scene.statistics()
 
 
@@ -46,7 +48,9 @@ def test_cache_limit(case, limit):
     """However small the cache, the image is complete and the same; and the limit holds, but for the smallest cache that can work."""
     statistics = same(case, CacheLimit=limit)
     cache = sum(size for name, size in statistics["memory"]["buffers"].items() if name.lower().startswith("cache"))
-    smallest = sum(size for name, size in same(case, CacheLimit=1)["memory"]["buffers"].items() if name.lower().startswith("cache"))
+    smallest = sum(
+        size for name, size in same(case, CacheLimit=1)["memory"]["buffers"].items() if name.lower().startswith("cache")
+    )
     assert 0 < cache <= max(limit, smallest)
 
 

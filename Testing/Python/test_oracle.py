@@ -26,7 +26,9 @@ def random_rays(rng, shape, count):
     targets = rng.uniform(0, 1, (count, 3)) * size
     targets[: count // 4] = np.round(targets[: count // 4])
     directions = rng.normal(size=(count, 3))
-    directions[::7] = np.eye(3)[rng.integers(0, 3, len(directions[::7]))] * rng.choice([-1, 1], (len(directions[::7]), 1))
+    directions[::7] = np.eye(3)[rng.integers(0, 3, len(directions[::7]))] * rng.choice(
+        [-1, 1], (len(directions[::7]), 1)
+    )
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     back = np.where(rng.uniform(size=count) < 0.3, 0.0, rng.uniform(0, 40, count))
     return targets - back[:, None] * directions, directions

@@ -24,7 +24,9 @@ def build():
     """Find the build of the plugin; without one fail in continuous integration, and skip elsewhere."""
     folder = os.environ.get("PROGISO_PARAVIEW_BUILD")
     if not folder:
-        (pytest.fail if os.environ.get("CI") else pytest.skip)("PROGISO_PARAVIEW_BUILD does not name a build for ParaView")
+        (pytest.fail if os.environ.get("CI") else pytest.skip)(
+            "PROGISO_PARAVIEW_BUILD does not name a build for ParaView"
+        )
     return pathlib.Path(folder)
 
 
@@ -45,12 +47,18 @@ def plugin(build):
 def under_x(*command, python_path=(), timeout=600, cwd=None):
     """Run a command in a virtual display of its own; return its output."""
     assert shutil.which("xvfb-run"), "the tests of the plugin need xvfb-run (Debian: xvfb, xauth)"
-    environment = {k: v for k, v in os.environ.items() if k not in ("VTK_DEFAULT_OPENGL_WINDOW", "PYTHONPATH", "VIRTUAL_ENV", "DISPLAY")}
+    environment = {
+        k: v
+        for k, v in os.environ.items()
+        if k not in ("VTK_DEFAULT_OPENGL_WINDOW", "PYTHONPATH", "VIRTUAL_ENV", "DISPLAY")
+    }
     environment["PYTHONPATH"] = os.pathsep.join(map(str, python_path))
     environment["PROGISO_GL_DEBUG"] = "1"
     # -noreset: the server must not restart, and refuse a connection meanwhile, when its only client closes one to open the next
     display = ["xvfb-run", "-n", str(next(displays)), "-s", "-screen 0 1280x1024x24 -noreset"]
-    done = subprocess.run([*display, *map(str, command)], env=environment, capture_output=True, text=True, timeout=timeout, cwd=cwd)
+    done = subprocess.run(
+        [*display, *map(str, command)], env=environment, capture_output=True, text=True, timeout=timeout, cwd=cwd
+    )
     output = done.stdout + done.stderr
     assert done.returncode == 0, output[-6000:]
     return output
@@ -89,7 +97,9 @@ def test_facts(shown):
 
 def test_ways_to_the_same_picture(shown):
     """Compressed on the fly or before, with and without speculation: not one pixel differs."""
-    first, *others = (pictures.read_png(shown / f"paraview-{way}.png") for way in ("plain", "compressed", "no-speculation"))
+    first, *others = (
+        pictures.read_png(shown / f"paraview-{way}.png") for way in ("plain", "compressed", "no-speculation")
+    )
     assert np.ptp(first) > 100
     assert all(np.array_equal(first, other) for other in others)
 
@@ -100,7 +110,7 @@ CORE = {
     "filters": ["test_filters.py"],
     "decoder": ["test_decode.py", "-k", "all_rates or extreme or random_streams"],
     "depth": ["test_depth.py", "-k", "white_noise or geometry or user_matrix or camera_inside or ct-cranium"],
-    "invariance": ["test_invariance.py", "test_statistics.py"],
+    "invariance": ["test_invariance.py", "test_statistics.py", "test_progressive.py"],
     "scenes": ["test_scene.py", "test_pyvista.py"],
 }
 

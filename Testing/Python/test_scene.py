@@ -209,7 +209,9 @@ def test_gl_errors_are_counted(image):
     """The count that every scene's render is checked by does count: an error made on purpose shows in it."""
     scene = Scene(image, ISOVALUE, orbit(reference_volume(image), 1, 4), SIZE)
     scene.render()
-    library = {"vtkOSOpenGLRenderWindow": "libOSMesa.so.8", "vtkEGLRenderWindow": "libOpenGL.so.0"}.get(scene.window.GetClassName(), "libGL.so.1")
+    library = {"vtkOSOpenGLRenderWindow": "libOSMesa.so.8", "vtkEGLRenderWindow": "libOpenGL.so.0"}.get(
+        scene.window.GetClassName(), "libGL.so.1"
+    )
     scene.window.MakeCurrent()
     ctypes.CDLL(library).glEnable(0xFFFF)
     assert scene.mapper.GetNumberOfGLErrors() == 1

@@ -21,7 +21,9 @@ def scene():
 
 def test_keys(scene):
     statistics = scene.statistics()
-    assert {"passes", "total_ms", "memory", "stages", "left_out", "converged", "camera", "size", "gl"} <= set(statistics)
+    assert {"passes", "total_ms", "memory", "stages", "left_out", "converged", "camera", "size", "gl"} <= set(
+        statistics
+    )
     assert set(statistics["memory"]) == {"buffers", "total", "compressed"}
     assert set(statistics["camera"]) >= {"position", "focal_point", "view_up", "view_angle", "parallel"}
     assert all(set(PASS_KEYS) <= set(p) for p in statistics["passes"])
@@ -87,7 +89,9 @@ def check_memory(image, statistics):
     blocks = np.prod([-(-int(n) // 4) for n in metadata(image, "Dimensions")])
     bound = tolerances.BYTES_PER_BLOCK * blocks + tolerances.BYTES_PER_PIXEL * np.prod(statistics["size"])
     rest = memory["total"] - memory["compressed"] - cache
-    assert rest <= bound, f"{rest} bytes for {blocks} blocks and {np.prod(statistics['size'])} pixels: {memory['buffers']}"
+    assert (
+        rest <= bound
+    ), f"{rest} bytes for {blocks} blocks and {np.prod(statistics['size'])} pixels: {memory['buffers']}"
 
 
 def test_nothing_to_see():

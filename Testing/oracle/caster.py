@@ -52,7 +52,14 @@ class Volume:
 
     @classmethod
     def from_geometry(
-        cls, values, origin=(0, 0, 0), spacing=(1, 1, 1), direction=np.eye(3), extent_start=(0, 0, 0), user=np.eye(4), shift=0.0
+        cls,
+        values,
+        origin=(0, 0, 0),
+        spacing=(1, 1, 1),
+        direction=np.eye(3),
+        extent_start=(0, 0, 0),
+        user=np.eye(4),
+        shift=0.0,
     ):
         """Place `values` as ``vtkImageData`` does; `shift` is 0.5 where they belong to cells."""
         matrix = np.eye(4)

@@ -31,7 +31,9 @@ def decode(stream, dimensions, block_bits):
     numpy.ndarray
         float32 [z, y, x]
     """
-    return (_decode_by_binding if zfpy else _decode_by_tool)(bytes(stream), tuple(map(int, dimensions)), int(block_bits))
+    return (_decode_by_binding if zfpy else _decode_by_tool)(
+        bytes(stream), tuple(map(int, dimensions)), int(block_bits)
+    )
 
 
 def encode(values, rate):
