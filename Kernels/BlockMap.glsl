@@ -39,23 +39,33 @@ uint FindEntry(uint block)
   return NONE;
 }
 
+// Takes one of the entries of which at most `most` may be in use.
+bool ReserveEntry(uint most)
+{
+  if (atomicAdd(control.MapUsed, 1u) < most)
+  {
+    return true;
+  }
+  atomicAdd(control.MapUsed, ~0u);
+  return false;
+}
+
 // The block's entry, added where it had none and fewer than `most` are in use; NONE if the table is too full.
+// Many invocations may ask for one block at once and each reserve an entry for it until the first has
+// added it: who finds none to reserve looks again.
 uint InsertEntry(uint block, uint most)
 {
   uint entry = MapStart(block);
-  for (uint i = 0u; i < MAX_PROBES; ++i)
+  uint patience = 16u;
+  for (uint i = 0u; i < MAX_PROBES && patience > 0u;)
   {
     uint key = cacheMap[entry].Block;
     if (key == NONE)
     {
-      if (control.MapUsed >= most)
+      if (!ReserveEntry(most))
       {
-        return NONE;
-      }
-      if (atomicAdd(control.MapUsed, 1u) >= most)
-      {
-        atomicAdd(control.MapUsed, ~0u);
-        return NONE;
+        --patience;
+        continue;
       }
       key = atomicCompSwap(cacheMap[entry].Block, NONE, block);
       if (key == NONE)
@@ -69,6 +79,7 @@ uint InsertEntry(uint block, uint most)
       return entry;
     }
     entry = NextEntry(entry);
+    ++i;
   }
   return NONE;
 }

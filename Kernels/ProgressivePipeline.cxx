@@ -117,6 +117,7 @@ bool ProgressivePipeline::Initialize()
   this->SoftwareRenderer = renderer &&
     (std::strstr(renderer, "llvmpipe") || std::strstr(renderer, "softpipe") || std::strstr(renderer, "SWR"));
   glGenVertexArrays(1, &this->VertexArray);
+  glGenBuffers(1, &this->Staging);
   glGenBuffers(1, &this->SceneBuffer);
   glBindBuffer(GL_UNIFORM_BUFFER, this->SceneBuffer);
   glBufferData(GL_UNIFORM_BUFFER, sizeof(SceneBlock), nullptr, GL_DYNAMIC_DRAW);
@@ -132,9 +133,7 @@ bool ProgressivePipeline::Initialize()
   {
     *groups = { 0, 1, 1, 0 };
   }
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, this->Names[Index(Buffer::Control)]);
-  glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof(control), &control);
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
+  this->Write(Buffer::Control, 0, &control, sizeof(control));
   return true;
 }
 
@@ -150,6 +149,7 @@ void ProgressivePipeline::Release()
     program = 0;
   }
   glDeleteBuffers(1, &this->SceneBuffer);
+  glDeleteBuffers(1, &this->Staging);
   glDeleteVertexArrays(1, &this->VertexArray);
   glDeleteQueries(static_cast<GLsizei>(this->TimeQueries.size()), this->TimeQueries.data());
   if (this->SceneBuffer && std::getenv("PROGISO_GL_DEBUG"))
@@ -159,6 +159,7 @@ void ProgressivePipeline::Release()
   this->TimeQueries.clear();
   this->Error.clear();
   this->SceneBuffer = 0;
+  this->Staging = 0;
   this->VertexArray = 0;
   this->Extent = PipelineExtent();
   this->Started = false;
@@ -275,23 +276,38 @@ void ProgressivePipeline::Fill(Buffer buffer, std::uint32_t value)
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
 }
 
+// The CPU never touches a buffer of the stages itself but a copy: drivers move what it touches to the
+// host's memory, where the stages' atomics are slow or, on some, go astray.
 template <typename T>
-T ProgressivePipeline::Read(Buffer buffer, std::size_t offset)
+T ProgressivePipeline::Read(Buffer buffer)
 {
   T value;
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, this->Names[Index(buffer)]);
-  glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, static_cast<GLintptr>(offset), sizeof(T), &value);
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
+  glBindBuffer(GL_COPY_READ_BUFFER, this->Names[Index(buffer)]);
+  glBindBuffer(GL_COPY_WRITE_BUFFER, this->Staging);
+  glBufferData(GL_COPY_WRITE_BUFFER, sizeof(T), nullptr, GL_STREAM_READ);
+  glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, sizeof(T));
+  glGetBufferSubData(GL_COPY_WRITE_BUFFER, 0, sizeof(T), &value);
+  glBindBuffer(GL_COPY_READ_BUFFER, 0);
+  glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
   return value;
+}
+
+void ProgressivePipeline::Write(Buffer buffer, std::size_t offset, const void* data, std::size_t bytes)
+{
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  glBindBuffer(GL_COPY_READ_BUFFER, this->Staging);
+  glBufferData(GL_COPY_READ_BUFFER, static_cast<GLsizeiptr>(bytes), data, GL_STREAM_DRAW);
+  glBindBuffer(GL_COPY_WRITE_BUFFER, this->Names[Index(buffer)]);
+  glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, static_cast<GLintptr>(offset),
+    static_cast<GLsizeiptr>(bytes));
+  glBindBuffer(GL_COPY_READ_BUFFER, 0);
+  glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
 }
 
 void ProgressivePipeline::WriteControl(std::size_t offset, std::uint32_t value)
 {
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, this->Names[Index(Buffer::Control)]);
-  glBufferSubData(GL_SHADER_STORAGE_BUFFER, static_cast<GLintptr>(offset), sizeof(value), &value);
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
+  this->Write(Buffer::Control, offset, &value, sizeof(value));
 }
 
 void ProgressivePipeline::UploadScene()
@@ -688,10 +704,8 @@ bool ProgressivePipeline::DecodeBlocks(std::int64_t first, std::int64_t count, f
     blocks[i] = static_cast<std::uint32_t>(first + i);
   }
   const GLsizeiptr bytes = static_cast<GLsizeiptr>(4 * count);
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, this->Names[Index(Buffer::CacheDecodeList)]);
-  glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, bytes, slots.data());
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, this->Names[Index(Buffer::CacheSlotBlock)]);
-  glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, bytes, blocks.data());
+  this->Write(Buffer::CacheDecodeList, 0, slots.data(), bytes);
+  this->Write(Buffer::CacheSlotBlock, 0, blocks.data(), bytes);
   this->WriteControl(offsetof(ControlBlock, DecodedBlocks), static_cast<std::uint32_t>(count));
   this->Dispatch(Stage::DecodeBlocks, DivideUp(count, 32));
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);

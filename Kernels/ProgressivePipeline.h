@@ -92,7 +92,8 @@ private:
   void Free(Buffer buffer);
   void Fill(Buffer buffer, std::uint32_t value);
   template <typename T>
-  T Read(Buffer buffer, std::size_t offset = 0);
+  T Read(Buffer buffer);
+  void Write(Buffer buffer, std::size_t offset, const void* data, std::size_t bytes);
   void WriteControl(std::size_t offset, std::uint32_t value);
   void UploadScene();
 
@@ -110,6 +111,7 @@ private:
   std::array<std::int64_t, NumberOfBuffers> Bytes = {};
   std::array<GLuint, NumberOfStages> Programs = {};
   GLuint SceneBuffer = 0;
+  GLuint Staging = 0; ///< what the CPU reads and writes passes through it
   GLuint VertexArray = 0;
   std::vector<GLuint> TimeQueries; ///< image start, then one a pass; unused on software renderers
 
