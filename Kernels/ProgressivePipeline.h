@@ -7,15 +7,11 @@
 #ifndef ProgressivePipeline_h
 #define ProgressivePipeline_h
 
-#include "PipelineBuffers.h"
-#include "PipelineStages.h"
-#include "ProgIsoGL.h"
-#include "SceneBlock.h"
+#include "PipelineResources.h"
 
 #include <array>
 #include <chrono>
 #include <functional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -61,18 +57,14 @@ public:
   /// Shade the hits that have come in. `again`: all of them, for a new look.
   void ShadeHits(bool again);
   /// Draw the image with its depth into the current framebuffer and viewport.
-  void Composite();
+  void Composite() { this->Gpu.DrawComposite(); }
 
   bool GetConverged() const { return this->Started && this->Remaining == 0; }
   double GetCompletedFraction() const;
   const std::vector<TimedPass>& GetPasses() const { return this->Passes; }
-  const std::set<Stage>& GetStagesRun() const { return this->StagesRun; }
-  std::int64_t GetBufferBytes(Buffer buffer) const { return this->Bytes[static_cast<int>(buffer)]; }
-  std::int64_t GetSceneBytes() const { return this->SceneBuffer ? sizeof(SceneBlock) : 0; }
+  const PipelineResources& GetResources() const { return this->Gpu; }
   const SceneBlock& GetScene() const { return this->Scene; }
-  const std::string& GetError() const { return this->Error; }
-  std::string GetDescription() const;
-  int GetNumberOfGLErrors() const { return this->GLErrors; }
+  const std::string& GetError() const { return this->Gpu.GetError(); }
 
   /// Hit keys of all pixels, rows from the bottom (see Rays.glsl), and the parameter one stands for.
   std::vector<std::uint32_t> ReadHitKeys();
@@ -82,20 +74,8 @@ public:
 private:
   using Clock = std::chrono::steady_clock;
 
-  bool CheckContext();
-  GLuint Program(Stage stage);
-  void Bind(Stage stage);
-  void Dispatch(Stage stage, std::int64_t groupsX, std::int64_t groupsY = 1);
-  void DispatchIndirect(Stage stage, std::size_t controlOffset);
-  bool Allocate(Buffer buffer, std::int64_t bytes);
-  bool AllocateAll(Lifetime lifetime);
-  void Free(Buffer buffer);
-  void Fill(Buffer buffer, std::uint32_t value);
-  template <typename T>
-  T Read(Buffer buffer);
-  void Write(Buffer buffer, std::size_t offset, const void* data, std::size_t bytes);
+  ControlBlock ReadControl();
   void WriteControl(std::size_t offset, std::uint32_t value);
-  void UploadScene();
 
   void RunPass();
   void EvictBlocks();
@@ -105,23 +85,14 @@ private:
   bool ResizeCache(std::int64_t slots);
   bool GrowCache();
   double Since(Clock::time_point start) const;
-  bool Fail(const std::string& message);
 
-  std::array<GLuint, NumberOfBuffers> Names = {};
-  std::array<std::int64_t, NumberOfBuffers> Bytes = {};
-  std::array<GLuint, NumberOfStages> Programs = {};
-  GLuint SceneBuffer = 0;
-  GLuint Staging = 0; ///< what the CPU reads and writes passes through it
-  GLuint VertexArray = 0;
+  PipelineResources Gpu;
   std::vector<GLuint> TimeQueries; ///< image start, then one a pass; unused on software renderers
 
   PipelineExtent Extent;
-  PipelineVolume Volume;
   SceneBlock Scene;
   std::int64_t CacheLimit = 0;
   int SpeculationLimit = 64;
-  bool SoftwareRenderer = false;
-  bool ByExtensions = false; ///< the context is older than 4.3 but offers what we need
 
   bool Started = false;
   std::int64_t Remaining = 0; ///< live rays after the last known pass
@@ -129,9 +100,6 @@ private:
   Clock::time_point StartTime;
   std::vector<double> PassEnds; ///< software renderers: milliseconds since the start
   std::vector<TimedPass> Passes;
-  std::set<Stage> StagesRun;
-  std::string Error;
-  int GLErrors = 0;
 };
 
 #endif

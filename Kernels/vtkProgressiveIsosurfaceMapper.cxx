@@ -366,25 +366,27 @@ void vtkProgressiveIsosurfaceMapper::Internals::FillStatistics()
       vtkDoubleArray::SafeDownCast(table->GetColumn(column))->SetValue(static_cast<vtkIdType>(i), row[column]);
     }
   }
+  const PipelineResources& resources = this->Pipeline.GetResources();
   statistics->Buffers.clear();
   for (const BufferInfo& info : PipelineBuffers())
   {
-    if (this->Pipeline.GetBufferBytes(info.Id) > 0)
+    if (resources.GetBytes(info.Id) > 0)
     {
-      statistics->Buffers.emplace_back(info.Name, this->Pipeline.GetBufferBytes(info.Id));
+      statistics->Buffers.emplace_back(info.Name, resources.GetBytes(info.Id));
     }
   }
-  statistics->Buffers.emplace_back("scene", this->Pipeline.GetSceneBytes());
+  statistics->Buffers.emplace_back("scene", sizeof(SceneBlock));
+  statistics->Buffers.emplace_back("staging", resources.GetStagingBytes());
   statistics->Stages.clear();
   statistics->StagesLeftOut.clear();
   for (const StageInfo& info : PipelineStages())
   {
-    const bool ran = this->Pipeline.GetStagesRun().count(info.Id) > 0;
+    const bool ran = resources.GetStagesRun().count(info.Id) > 0;
     (ran ? statistics->Stages : statistics->StagesLeftOut).emplace_back(info.Name);
   }
   statistics->TotalMilliseconds = this->TotalMilliseconds;
   statistics->Converged = this->Pipeline.GetConverged();
-  statistics->GLDescription = this->Pipeline.GetDescription();
+  statistics->GLDescription = PipelineResources::GetDescription();
   statistics->Modified();
 }
 
@@ -436,7 +438,7 @@ vtkProgressiveIsosurfaceStatistics* vtkProgressiveIsosurfaceMapper::GetStatistic
 
 int vtkProgressiveIsosurfaceMapper::GetNumberOfGLErrors()
 {
-  return this->Impl->Pipeline.GetNumberOfGLErrors();
+  return this->Impl->Pipeline.GetResources().GetNumberOfGLErrors();
 }
 
 void vtkProgressiveIsosurfaceMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
