@@ -93,6 +93,10 @@ bool Admit(ivec3 block, uint needs)
 uint AllotRun(uint block, uint rays)
 {
   uint first = atomicAdd(control.Pairs, rays);
+  if (rays < scene.Payload.w)
+  {
+    return UNGROUPED; // IntersectPairs.comp sees to them
+  }
   uint perItem = scene.Payload.z;
   uint items = (rays + perItem - 1u) / perItem;
   uint item = atomicAdd(control.WorkItems, items);

@@ -100,7 +100,7 @@ struct MapEntry
   uint Block;  // key; NONE: free entry
   uint Slot;   // where the block's values are; NONE: not in the cache
   uint Rays;   // pairs of this pass that ask for the block; 0: not visible
-  uint Offset; // where its rays stand in groupedRays; NONE: deferred to the next pass
+  uint Offset; // where its rays stand in groupedRays; UNGROUPED: nowhere; NONE: deferred to the next pass
   uint Needs;  // neighbours wanted beside it, a bit each (see NeighbourBit)
 };
 layout(std430, binding = BINDING_CACHE_MAP) coherent buffer CacheMap { MapEntry cacheMap[]; };

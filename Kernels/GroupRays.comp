@@ -18,9 +18,13 @@ void main()
     {
       continue;
     }
-    if (cacheMap[entry].Offset == NONE)
+    uint offset = cacheMap[entry].Offset;
+    if (offset == NONE)
     {
       pairEntry[i] = NONE;
+    }
+    if (offset >= UNGROUPED)
+    {
       continue;
     }
     uint at = atomicAdd(cacheMap[entry].Offset, 1u);

@@ -3,6 +3,7 @@
 // on its Bernstein coefficients, which are values of the interpolant at the corners of the box spanned
 // by the ray's way through the cell (the cubic's polar form). They are convex combinations of the
 // corners' values: signs are decided without cancellation, and alike on both sides of a shared face.
+// All of it is `precise`: two stages do the same arithmetic and have to find the same bits.
 // Inside is where value - isovalue >= 0; the surface is where inside and outside meet.
 
 float Lerp(float a, float b, float s)
@@ -25,8 +26,8 @@ vec4 CubicAlong(float w[8], vec3 u0, vec3 u1)
   vec2 f10 = vec2(Lerp(x1[0], x1[1], u0.y), Lerp(x1[2], x1[3], u0.y));
   vec2 f01 = vec2(Lerp(x0[0], x0[1], u1.y), Lerp(x0[2], x0[3], u1.y));
   vec2 f11 = vec2(Lerp(x1[0], x1[1], u1.y), Lerp(x1[2], x1[3], u1.y));
-  float b1 = Lerp(f10.x, f10.y, u0.z) + Lerp(f01.x, f01.y, u0.z) + Lerp(f00.x, f00.y, u1.z);
-  float b2 = Lerp(f11.x, f11.y, u0.z) + Lerp(f10.x, f10.y, u1.z) + Lerp(f01.x, f01.y, u1.z);
+  precise float b1 = Lerp(f10.x, f10.y, u0.z) + Lerp(f01.x, f01.y, u0.z) + Lerp(f00.x, f00.y, u1.z);
+  precise float b2 = Lerp(f11.x, f11.y, u0.z) + Lerp(f10.x, f10.y, u1.z) + Lerp(f01.x, f01.y, u1.z);
   return vec4(Lerp(f00.x, f00.y, u0.z), b1 / 3.0, b2 / 3.0, Lerp(f11.x, f11.y, u1.z));
 }
 
@@ -62,7 +63,7 @@ vec2 Extrema(vec4 b)
   {
     return vec2(1.0);
   }
-  float q = -(h + (h < 0.0 ? -1.0 : 1.0) * sqrt(discriminant));
+  precise float q = -(h + (h < 0.0 ? -1.0 : 1.0) * sqrt(discriminant));
   float r0 = a != 0.0 ? q / a : 2.0;
   float r1 = q != 0.0 ? d.x / q : 2.0;
   r0 = r0 > 0.0 && r0 < 1.0 ? r0 : 1.0; // false also for NaN
@@ -85,7 +86,7 @@ float RefineRoot(vec4 b, float low, float high, bool lowInside)
     {
       high = s;
     }
-    float next = s - value / (3.0 * CubicSlope(b, s));
+    precise float next = s - value / (3.0 * CubicSlope(b, s));
     next = next > low && next < high ? next : 0.5 * (low + high);
     if (abs(next - s) < 5e-8 || high - low < 5e-8)
     {
@@ -116,4 +117,17 @@ float FirstTransition(vec4 b)
     }
   }
   return -1.0;
+}
+
+// Are there corners on both sides?
+bool Straddle(float w[8])
+{
+  bool someInside = false;
+  bool allInside = true;
+  for (int i = 0; i < 8; ++i)
+  {
+    someInside = someInside || Inside(w[i]);
+    allInside = allInside && Inside(w[i]);
+  }
+  return someInside && !allInside;
 }

@@ -1,6 +1,6 @@
 // What happens between two uses of the block cache, by a single invocation: the CPU decides none of it.
 
-#define PASS_RECORDS 256u
+#define PASS_RECORDS 64u
 
 uint GroupsFor(uint count, uint groupSize)
 {

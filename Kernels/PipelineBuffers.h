@@ -94,6 +94,6 @@ struct PassRecord
   std::uint32_t ActiveBlocks, DecodedBlocks, CachedBlocks, RemainingRays;
   std::uint32_t DeferredBlocks, Pad[3];
 };
-constexpr std::int64_t PassRecords = 256; ///< ring of the last passes' records
+constexpr std::int64_t PassRecords = 64; ///< ring of the last passes' records
 
 #endif

@@ -12,7 +12,7 @@
 namespace
 {
 constexpr std::int64_t MaximumGroups = 65535;  // on an axis, guaranteed by OpenGL 4.3
-constexpr std::size_t LargestStaging = 1 << 16; // bytes that stay allocated for traffic with the CPU
+constexpr std::size_t LargestStaging = 1 << 12; // bytes that stay allocated for traffic with the CPU
 
 int Index(Buffer buffer)
 {

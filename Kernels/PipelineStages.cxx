@@ -22,6 +22,7 @@ const std::vector<StageInfo>& PipelineStages()
     { Stage::DecodeBlocks,    "DecodeBlocks",    { B::Control, B::Payload, B::CacheDecodeList, B::CacheSlotBlock, B::CacheValues } },
     { Stage::GroupRays,       "GroupRays",       { B::Control, B::LiveRays, B::PairEntry, B::CacheMap, B::GroupedRays } },
     { Stage::IntersectBlocks, "IntersectBlocks", { B::Control, B::CacheWorkItems, B::GroupedRays, B::CacheMap, B::CacheValues, B::RayHit } },
+    { Stage::IntersectPairs,  "IntersectPairs",  { B::Control, B::LiveRays, B::PairBlock, B::PairEntry, B::CacheMap, B::CacheValues, B::RayHit } },
     { Stage::NearestHit,      "NearestHit",      { B::Control, B::LiveRays, B::RayHit, B::PairBlock, B::PairEntry, B::RayBlock, B::NextLiveRays } },
     { Stage::BeginShading,    "BeginShading",    { B::Control, B::PassStatistics } },
     { Stage::MarkShading,     "MarkShading",     { B::Control, B::RayHit, B::RayBlock, B::PixelColor, B::PairEntry, B::CacheMap, B::CacheVisible } },

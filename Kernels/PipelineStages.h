@@ -24,6 +24,7 @@ enum class Stage
   DecodeBlocks,
   GroupRays,
   IntersectBlocks,
+  IntersectPairs,
   NearestHit,
   BeginShading,
   MarkShading,

@@ -9,6 +9,7 @@ namespace
 {
 constexpr std::int64_t MinimumSlots = 128;              // a quarter of it admits any block's neighbourhood
 constexpr std::int64_t AutomaticCacheBytes = 1LL << 30; // upper bound where the user sets none
+constexpr int FewestGroupedRays = 8; // below, a GPU's work group has too little to do
 constexpr int PassesPerBatch = 4;    // submitted before the CPU asks how many rays are left
 constexpr int PatienceWithNone = 16; // passes or shading rounds that get nowhere before we give up
 
@@ -100,7 +101,7 @@ bool ProgressivePipeline::SetVolume(const PipelineVolume& volume)
   return this->GetError().empty();
 }
 
-void ProgressivePipeline::SetLimits(std::int64_t cacheBytes, int speculation)
+void ProgressivePipeline::SetLimits(std::int64_t cacheBytes, int speculation, int grouping)
 {
   if (cacheBytes != this->CacheLimit)
   {
@@ -108,6 +109,8 @@ void ProgressivePipeline::SetLimits(std::int64_t cacheBytes, int speculation)
   }
   this->CacheLimit = cacheBytes;
   this->SpeculationLimit = speculation;
+  // a software renderer has no lanes to keep busy
+  this->GroupingThreshold = grouping >= 0 ? grouping : this->Gpu.IsSoftware() ? 0 : FewestGroupedRays;
 }
 
 // As many slots as the limit, one buffer's size and the volume's number of blocks let make sense.
@@ -183,6 +186,7 @@ bool ProgressivePipeline::SetScene(const SceneBlock& scene)
   std::copy(own.Payload, own.Payload + 4, this->Scene.Payload);
   std::copy(own.Cache, own.Cache + 4, this->Scene.Cache);
   this->Scene.Cache[2] = static_cast<std::uint32_t>(this->SpeculationLimit);
+  this->Scene.Payload[3] = static_cast<std::uint32_t>(this->GroupingThreshold);
   this->Extent.Pixels = static_cast<std::int64_t>(scene.Image[0]) * scene.Image[1];
   if (!this->Gpu.Allocate(Lifetime::Image, this->Extent))
   {
@@ -236,6 +240,10 @@ void ProgressivePipeline::RunPass()
   this->Gpu.DispatchIndirect(Stage::DecodeBlocks, offsetof(ControlBlock, DecodeGroups));
   this->Gpu.DispatchIndirect(Stage::GroupRays, offsetof(ControlBlock, PairGroups));
   this->Gpu.DispatchIndirect(Stage::IntersectBlocks, offsetof(ControlBlock, IntersectGroups));
+  if (this->Scene.Payload[3] > 0)
+  {
+    this->Gpu.DispatchIndirect(Stage::IntersectPairs, offsetof(ControlBlock, PairGroups));
+  }
   this->Gpu.DispatchIndirect(Stage::NearestHit, offsetof(ControlBlock, TraverseGroups));
   this->Gpu.Swap(Buffer::LiveRays, Buffer::NextLiveRays);
   ++this->PassesSubmitted;

@@ -44,8 +44,9 @@ public:
 
   /// Upload a volume and compute its macrocell grid. What the cache held is void.
   bool SetVolume(const PipelineVolume& volume);
-  /// Bounds of the block cache in bytes (0: automatic) and the greatest speculation count (1: off).
-  void SetLimits(std::int64_t cacheBytes, int speculation);
+  /// Bounds of the block cache in bytes (0: automatic), the greatest speculation count (1: off), and the
+  /// number of rays from which on a block's rays are grouped (negative: automatic).
+  void SetLimits(std::int64_t cacheBytes, int speculation, int grouping);
   /// The image's size, camera, isovalue and look; the pipeline fills in what it knows itself.
   bool SetScene(const SceneBlock& scene);
 
@@ -93,6 +94,7 @@ private:
   SceneBlock Scene;
   std::int64_t CacheLimit = 0;
   int SpeculationLimit = 64;
+  int GroupingThreshold = 0;
 
   bool Started = false;
   std::int64_t Remaining = 0; ///< live rays after the last known pass

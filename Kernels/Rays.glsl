@@ -61,8 +61,8 @@ Ray CameraRay(uint pixel)
 // ---- hit keys: unsigned integers in the order of t, so that atomicMin keeps the nearest hit
 uint HitKey(Ray ray, double t)
 {
-  double extent = ray.Leave - ray.Enter;
-  double fraction = extent > 0.0LF ? clamp((t - ray.Enter) / extent, 0.0LF, 1.0LF) : 0.0LF;
+  precise double extent = ray.Leave - ray.Enter;
+  precise double fraction = extent > 0.0LF ? clamp((t - ray.Enter) / extent, 0.0LF, 1.0LF) : 0.0LF;
   return uint(fraction * HIT_STEPS);
 }
 

@@ -3,6 +3,7 @@
 
 #define NONE 0xFFFFFFFFu      // no block, no entry, no slot
 #define CLAIMED 0xFFFFFFFEu   // an entry whose cache slot is being assigned in this very dispatch
+#define UNGROUPED 0xFFFFFFFEu // run of a block whose rays are intersected one by one
 #define EXITED 0xFFFFFFFFu    // state of a ray that needs no further block
 #define NO_HIT 0xFFFFFFFFu    // hit key of a ray that has met no surface
 #define MAX_GROUPS 65535u     // OpenGL 4.3's guaranteed number of work groups on an axis
@@ -25,7 +26,7 @@ layout(std140, binding = 0) uniform Scene
   ivec4 Blocks;      // ZFP blocks per axis; w: their number
   ivec4 CoarseCells; // macrocells of 4^3 blocks per axis; w: their number
   ivec4 Image;       // width and height of the viewport, its origin in the window
-  uvec4 Payload;     // bits per block, 32-bit words of payload, rays per work item
+  uvec4 Payload;     // bits per block, 32-bit words of payload, rays per work item and from how many on a block gets one
   uvec4 Cache;       // slots, entries of the block map, speculation limit
   vec4 Isovalue;     // the isovalue as a sum of two floats
   mat4 NormalMatrix; // index-space gradient to view-space normal (3x3)

@@ -249,7 +249,8 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(vtkRenderer* rendere
   }
   this->Scene = scene;
   this->HaveScene = true;
-  this->Pipeline.SetLimits(this->Owner->CacheLimit, this->Owner->SpeculationLimit);
+  this->Pipeline.SetLimits(
+    this->Owner->CacheLimit, this->Owner->SpeculationLimit, this->Owner->GroupingThreshold);
   if (!this->Pipeline.SetScene(scene))
   {
     return this->Report(this->Pipeline.GetError());
@@ -408,6 +409,7 @@ void vtkProgressiveIsosurfaceMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Rate: " << this->Rate << "\n";
   os << indent << "Component: " << this->Component << "\n";
   os << indent << "SpeculationLimit: " << this->SpeculationLimit << "\n";
+  os << indent << "GroupingThreshold: " << this->GroupingThreshold << "\n";
   os << indent << "CacheLimit: " << this->CacheLimit << "\n";
   os << indent << "MaximumPassesPerRender: " << this->MaximumPassesPerRender << "\n";
   os << indent << "TimeAllowance: " << this->TimeAllowance << "\n";

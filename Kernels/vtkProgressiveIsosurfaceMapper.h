@@ -86,6 +86,16 @@ public:
 
   ///@{
   /**
+   * Blocks that fewer rays visit in a pass are not given a work group each: their rays are intersected
+   * one by one. Same result; which is faster depends on the GPU. -1 (default): automatic, 8 on GPUs and 0
+   * on software renderers.
+   */
+  vtkSetClampMacro(GroupingThreshold, int, -1, VTK_INT_MAX);
+  vtkGetMacro(GroupingThreshold, int);
+  ///@}
+
+  ///@{
+  /**
    * The most passes in one Render(); 0 (default): no bound. With a bound, an image may need several
    * renders also off-screen.
    */
@@ -145,6 +155,7 @@ protected:
   double Rate = 8.0;
   int Component = 0;
   int SpeculationLimit = 64;
+  int GroupingThreshold = -1;
   vtkTypeInt64 CacheLimit = 0;
   int MaximumPassesPerRender = 0;
   double TimeAllowance = 0.05;

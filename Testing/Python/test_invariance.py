@@ -54,6 +54,13 @@ def test_cache_limit(case, limit):
     assert 0 < cache <= max(limit, smallest)
 
 
+@pytest.mark.parametrize("threshold", [0, 8, 40, 1 << 30])
+def test_grouping_threshold(case, threshold):
+    """Rays that go through a block together find what each would find alone."""
+    stages = same(case, GroupingThreshold=threshold)["stages"]
+    assert ("IntersectPairs" in stages) == (threshold > 0)
+
+
 @pytest.mark.parametrize("speculation", [1, 64])
 @pytest.mark.parametrize("passes", [1, 2, 5])
 def test_passes_per_render(case, passes, speculation):
