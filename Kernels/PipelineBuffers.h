@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
-// Every GPU buffer of the pipeline: what it is for, how large it is, who writes it and who reads it.
-// Buffers.glsl declares the same buffers for the stages.
+// Every GPU buffer of the pipeline: what it is for, how large it is, who writes it and who reads
+// it. Buffers.glsl declares the same buffers for the stages.
 #ifndef PipelineBuffers_h
 #define PipelineBuffers_h
 
@@ -84,7 +84,8 @@ struct ControlBlock
   std::uint32_t DecodedBlocks, WorkItems, ReservedSlots, DeferredBlocks;
   std::uint32_t FreeHead, FreeSlots, MapUsed, EvictSlots;
   std::uint32_t UnshadedHits, AdmittedBlocks, Evicted, Pad;
-  DispatchArguments TraverseGroups, PairGroups, AdmitGroups, DecodeGroups, IntersectGroups, EvictGroups;
+  DispatchArguments TraverseGroups, PairGroups, AdmitGroups, DecodeGroups, IntersectGroups,
+    EvictGroups;
   std::uint32_t Ages[256];
 };
 

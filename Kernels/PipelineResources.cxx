@@ -11,15 +11,17 @@
 
 namespace
 {
-constexpr std::int64_t MaximumGroups = 65535;  // on an axis, guaranteed by OpenGL 4.3
-constexpr std::size_t LargestStaging = 1 << 12; // bytes that stay allocated for traffic with the CPU
+constexpr std::int64_t MaximumGroups = 65535; // on an axis, guaranteed by OpenGL 4.3
+constexpr std::size_t LargestStaging = 1
+  << 12; // bytes that stay allocated for traffic with the CPU
 
 int Index(Buffer buffer)
 {
   return static_cast<int>(buffer);
 }
 
-void GLAPIENTRY CountError(GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLchar*, const void* counter)
+void GLAPIENTRY CountError(
+  GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLchar*, const void* counter)
 {
   if (type == GL_DEBUG_TYPE_ERROR)
   {
@@ -56,11 +58,13 @@ std::string AttachShader(GLuint program, GLenum type, const std::string& source)
 //------------------------------------------------------------------------------
 bool PipelineResources::Fail(const std::string& message)
 {
-  this->Error = this->Error.empty() ? message : this->Error; // what comes later follows from the first
+  this->Error =
+    this->Error.empty() ? message : this->Error; // what comes later follows from the first
   return false;
 }
 
-// OpenGL 4.3, or an older context with its extensions: VTK asks EGL for 3.2, and NVIDIA gives just that.
+// OpenGL 4.3, or an older context with its extensions: VTK asks EGL for 3.2, and NVIDIA gives just
+// that.
 bool PipelineResources::CheckContext()
 {
   GLint major = 0, minor = 0, count = 0;
@@ -75,14 +79,16 @@ bool PipelineResources::CheckContext()
   glGetIntegerv(GL_NUM_EXTENSIONS, &count);
   for (GLint i = 0; i < count; ++i)
   {
-    offered.insert(reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(i))));
+    offered.insert(
+      reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(i))));
   }
   for (const std::string& extension : RequiredExtensions())
   {
     if (!offered.count(extension))
     {
-      return this->Fail("needs OpenGL 4.3 (compute shaders), but this context offers " + std::to_string(major) + "." +
-        std::to_string(minor) + " without " + extension + ": use a newer driver, or Mesa's llvmpipe");
+      return this->Fail("needs OpenGL 4.3 (compute shaders), but this context offers " +
+        std::to_string(major) + "." + std::to_string(minor) + " without " + extension +
+        ": use a newer driver, or Mesa's llvmpipe");
     }
   }
   return true;
@@ -104,7 +110,8 @@ bool PipelineResources::Initialize()
   }
   const char* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
   this->Software = renderer &&
-    (std::strstr(renderer, "llvmpipe") || std::strstr(renderer, "softpipe") || std::strstr(renderer, "SWR"));
+    (std::strstr(renderer, "llvmpipe") || std::strstr(renderer, "softpipe") ||
+      std::strstr(renderer, "SWR"));
   glGenVertexArrays(1, &this->VertexArray);
   glGenBuffers(1, &this->Staging);
   glGenBuffers(1, &this->SceneBuffer);
@@ -147,7 +154,8 @@ std::string PipelineResources::GetDescription()
   for (GLenum what : { GL_RENDERER, GL_VERSION })
   {
     const GLubyte* text = glGetString(what);
-    out << (what == GL_VERSION ? ", OpenGL " : "") << (text ? reinterpret_cast<const char*>(text) : "unknown");
+    out << (what == GL_VERSION ? ", OpenGL " : "")
+        << (text ? reinterpret_cast<const char*>(text) : "unknown");
   }
   return out.str();
 }
@@ -168,12 +176,15 @@ GLuint PipelineResources::Program(Stage stage)
   std::string log;
   if (stage == Stage::Composite)
   {
-    log = AttachShader(program, GL_VERTEX_SHADER, AssembleShader(name + ".vert", info, this->ByExtensions)) +
-      AttachShader(program, GL_FRAGMENT_SHADER, AssembleShader(name + ".frag", info, this->ByExtensions));
+    log = AttachShader(
+            program, GL_VERTEX_SHADER, AssembleShader(name + ".vert", info, this->ByExtensions)) +
+      AttachShader(
+        program, GL_FRAGMENT_SHADER, AssembleShader(name + ".frag", info, this->ByExtensions));
   }
   else
   {
-    log = AttachShader(program, GL_COMPUTE_SHADER, AssembleShader(name + ".comp", info, this->ByExtensions));
+    log = AttachShader(
+      program, GL_COMPUTE_SHADER, AssembleShader(name + ".comp", info, this->ByExtensions));
   }
   glLinkProgram(program);
   GLint linked = 0;
@@ -204,7 +215,8 @@ void PipelineResources::Bind(Stage stage)
 void PipelineResources::Dispatch(Stage stage, std::int64_t groupsX, std::int64_t groupsY)
 {
   this->Bind(stage);
-  glDispatchCompute(static_cast<GLuint>(std::min(groupsX, MaximumGroups)), static_cast<GLuint>(groupsY), 1);
+  glDispatchCompute(
+    static_cast<GLuint>(std::min(groupsX, MaximumGroups)), static_cast<GLuint>(groupsY), 1);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
 }
 
@@ -234,8 +246,8 @@ void PipelineResources::DrawComposite()
 void PipelineResources::ForgetStages(const std::set<Stage>& except)
 {
   std::set<Stage> kept;
-  std::set_intersection(this->StagesRun.begin(), this->StagesRun.end(), except.begin(), except.end(),
-    std::inserter(kept, kept.end()));
+  std::set_intersection(this->StagesRun.begin(), this->StagesRun.end(), except.begin(),
+    except.end(), std::inserter(kept, kept.end()));
   this->StagesRun = std::move(kept);
 }
 
@@ -260,7 +272,8 @@ bool PipelineResources::Allocate(Buffer buffer, std::int64_t bytes)
   }
   glGenBuffers(1, &this->Names[i]);
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, this->Names[i]);
-  glBufferData(GL_SHADER_STORAGE_BUFFER, std::max<std::int64_t>(bytes, 4), nullptr, GL_DYNAMIC_COPY);
+  glBufferData(
+    GL_SHADER_STORAGE_BUFFER, std::max<std::int64_t>(bytes, 4), nullptr, GL_DYNAMIC_COPY);
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
   if (glGetError() != GL_NO_ERROR)
   {
@@ -317,15 +330,16 @@ void PipelineResources::CopyAndDelete(GLuint old, Buffer buffer, std::int64_t by
   {
     glBindBuffer(GL_COPY_READ_BUFFER, old);
     glBindBuffer(GL_COPY_WRITE_BUFFER, this->Names[Index(buffer)]);
-    glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, static_cast<GLsizeiptr>(bytes));
+    glCopyBufferSubData(
+      GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, static_cast<GLsizeiptr>(bytes));
     glBindBuffer(GL_COPY_READ_BUFFER, 0);
     glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
   }
   glDeleteBuffers(1, &old);
 }
 
-// The CPU never touches a buffer of the stages itself but a copy: drivers move what it touches to the
-// host's memory, where the stages' atomics are slow or, on some, go astray.
+// The CPU never touches a buffer of the stages itself but a copy: drivers move what it touches to
+// the host's memory, where the stages' atomics are slow or, on some, go astray.
 void PipelineResources::Read(Buffer buffer, void* data, std::size_t bytes)
 {
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -333,7 +347,8 @@ void PipelineResources::Read(Buffer buffer, void* data, std::size_t bytes)
   glBindBuffer(GL_COPY_WRITE_BUFFER, this->Staging);
   glBufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(bytes), nullptr, GL_STREAM_READ);
   this->StagingBytes = static_cast<std::int64_t>(bytes);
-  glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, static_cast<GLsizeiptr>(bytes));
+  glCopyBufferSubData(
+    GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, static_cast<GLsizeiptr>(bytes));
   glGetBufferSubData(GL_COPY_WRITE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
   if (bytes > LargestStaging) // a whole image: nothing to keep room for
   {
@@ -344,7 +359,8 @@ void PipelineResources::Read(Buffer buffer, void* data, std::size_t bytes)
   glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
 }
 
-void PipelineResources::Write(Buffer buffer, std::size_t offset, const void* data, std::size_t bytes)
+void PipelineResources::Write(
+  Buffer buffer, std::size_t offset, const void* data, std::size_t bytes)
 {
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glBindBuffer(GL_COPY_READ_BUFFER, this->Staging);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
-// The OpenGL objects of a pipeline in the current context: buffers by their names in PipelineBuffers.h,
-// programs by their names in PipelineStages.h, and how they come together in a dispatch. Knows nothing of
-// the algorithm.
+// The OpenGL objects of a pipeline in the current context: buffers by their names in
+// PipelineBuffers.h, programs by their names in PipelineStages.h, and how they come together in a
+// dispatch. Knows nothing of the algorithm.
 #ifndef PipelineResources_h
 #define PipelineResources_h
 

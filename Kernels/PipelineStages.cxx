@@ -61,9 +61,10 @@ void Paste(const std::string& file, std::set<std::string>& pasted, std::ostrings
 
 const std::vector<std::string>& RequiredExtensions()
 {
-  static const std::vector<std::string> names = { "GL_ARB_arrays_of_arrays", "GL_ARB_clear_buffer_object",
-    "GL_ARB_compute_shader", "GL_ARB_explicit_attrib_location", "GL_ARB_gpu_shader5", "GL_ARB_gpu_shader_fp64",
-    "GL_ARB_shader_bit_encoding", "GL_ARB_shader_image_load_store", "GL_ARB_shader_storage_buffer_object",
+  static const std::vector<std::string> names = { "GL_ARB_arrays_of_arrays",
+    "GL_ARB_clear_buffer_object", "GL_ARB_compute_shader", "GL_ARB_explicit_attrib_location",
+    "GL_ARB_gpu_shader5", "GL_ARB_gpu_shader_fp64", "GL_ARB_shader_bit_encoding",
+    "GL_ARB_shader_image_load_store", "GL_ARB_shader_storage_buffer_object",
     "GL_ARB_shading_language_420pack", "GL_ARB_shading_language_packing", "GL_ARB_timer_query" };
   return names;
 }
@@ -88,7 +89,8 @@ std::string AssembleShader(const std::string& file, const StageInfo& stage, bool
   int binding = 0;
   for (Buffer buffer : stage.Buffers)
   {
-    out << "#define BINDING_" << PipelineBuffers()[static_cast<int>(buffer)].Macro << " " << binding++ << "\n";
+    out << "#define BINDING_" << PipelineBuffers()[static_cast<int>(buffer)].Macro << " "
+        << binding++ << "\n";
   }
   std::set<std::string> pasted;
   Paste(file, pasted, out);

@@ -50,8 +50,8 @@ const std::map<std::string, const char*>& ShaderSources();
 /// What an OpenGL context older than 4.3 must offer instead, by name.
 const std::vector<std::string>& RequiredExtensions();
 
-/// Complete source of a file for a stage: version (4.30, or 1.50 with the required extensions), buffer
-/// bindings, and the file with its includes.
+/// Complete source of a file for a stage: version (4.30, or 1.50 with the required extensions),
+/// buffer bindings, and the file with its includes.
 std::string AssembleShader(const std::string& file, const StageInfo& stage, bool byExtensions);
 
 #endif

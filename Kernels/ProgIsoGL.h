@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
-// VTK 9.4 and later load OpenGL through glad, earlier ones through GLEW; the gl* names are the same.
+// VTK 9.4 and later load OpenGL through glad, earlier ones through GLEW; the gl* names are the
+// same.
 #ifndef ProgIsoGL_h
 #define ProgIsoGL_h
 

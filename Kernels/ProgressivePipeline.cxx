@@ -7,7 +7,7 @@
 
 namespace
 {
-constexpr std::int64_t MinimumSlots = 128;              // a quarter of it admits any block's neighbourhood
+constexpr std::int64_t MinimumSlots = 128; // a quarter of it admits any block's neighbourhood
 constexpr std::int64_t AutomaticCacheBytes = 1LL << 30; // upper bound where the user sets none
 constexpr int FewestGroupedRays = 8; // below, a GPU's work group has too little to do
 constexpr int PassesPerBatch = 4;    // submitted before the CPU asks how many rays are left
@@ -32,8 +32,9 @@ bool ProgressivePipeline::Initialize()
   }
   ControlBlock control = {};
   control.PassSerial = 1;
-  for (DispatchArguments* groups : { &control.TraverseGroups, &control.PairGroups, &control.AdmitGroups,
-         &control.DecodeGroups, &control.IntersectGroups, &control.EvictGroups })
+  for (DispatchArguments* groups :
+    { &control.TraverseGroups, &control.PairGroups, &control.AdmitGroups, &control.DecodeGroups,
+      &control.IntersectGroups, &control.EvictGroups })
   {
     *groups = { 0, 1, 1, 0 };
   }
@@ -70,7 +71,8 @@ bool ProgressivePipeline::SetVolume(const PipelineVolume& volume)
   if (volume.StreamBytes > PipelineResources::LargestBuffer)
   {
     return this->Gpu.Fail("the compressed volume has " + std::to_string(volume.StreamBytes) +
-      " bytes, more than one GPU buffer can bind (" + std::to_string(PipelineResources::LargestBuffer) + "): lower the rate");
+      " bytes, more than one GPU buffer can bind (" +
+      std::to_string(PipelineResources::LargestBuffer) + "): lower the rate");
   }
   this->Started = false;
   this->Gpu.ForgetStages();
@@ -110,7 +112,9 @@ void ProgressivePipeline::SetLimits(std::int64_t cacheBytes, int speculation, in
   this->CacheLimit = cacheBytes;
   this->SpeculationLimit = speculation;
   // a software renderer has no lanes to keep busy
-  this->GroupingThreshold = grouping >= 0 ? grouping : this->Gpu.IsSoftware() ? 0 : FewestGroupedRays;
+  this->GroupingThreshold = grouping >= 0 ? grouping
+    : this->Gpu.IsSoftware()              ? 0
+                                          : FewestGroupedRays;
 }
 
 // As many slots as the limit, one buffer's size and the volume's number of blocks let make sense.
@@ -133,9 +137,11 @@ bool ProgressivePipeline::ResizeCache(std::int64_t slots)
 {
   const ControlBlock control = this->ReadControl();
   const std::int64_t kept = this->Extent.Slots;
-  const std::array<Buffer, 3> contents = { Buffer::CacheValues, Buffer::CacheSlotBlock, Buffer::CacheSlotStamp };
+  const std::array<Buffer, 3> contents = { Buffer::CacheValues, Buffer::CacheSlotBlock,
+    Buffer::CacheSlotStamp };
   std::array<GLuint, 3> old;
-  std::transform(contents.begin(), contents.end(), old.begin(), [this](Buffer b) { return this->Gpu.Detach(b); });
+  std::transform(contents.begin(), contents.end(), old.begin(),
+    [this](Buffer b) { return this->Gpu.Detach(b); });
   this->Extent.Slots = slots;
   const bool allocated = this->Gpu.Allocate(Lifetime::Cache, this->Extent);
   if (allocated)
@@ -193,7 +199,8 @@ bool ProgressivePipeline::SetScene(const SceneBlock& scene)
     return false;
   }
   // its size follows from both the cache and the image
-  const std::int64_t workItems = PipelineBuffers()[static_cast<int>(Buffer::CacheWorkItems)].Bytes(this->Extent);
+  const std::int64_t workItems =
+    PipelineBuffers()[static_cast<int>(Buffer::CacheWorkItems)].Bytes(this->Extent);
   if (this->Extent.Slots > 0 && !this->Gpu.Allocate(Buffer::CacheWorkItems, workItems))
   {
     return false;
@@ -224,12 +231,13 @@ void ProgressivePipeline::Start()
   this->WriteControl(offsetof(ControlBlock, LiveRays), 0);
   this->WriteControl(offsetof(ControlBlock, NextLiveRays), 0);
   this->WriteControl(offsetof(ControlBlock, PassIndex), 0);
-  this->Gpu.Dispatch(Stage::InitialRays, DivideUp(this->Scene.Image[0], 8), DivideUp(this->Scene.Image[1], 8));
+  this->Gpu.Dispatch(
+    Stage::InitialRays, DivideUp(this->Scene.Image[0], 8), DivideUp(this->Scene.Image[1], 8));
   this->Gpu.Swap(Buffer::LiveRays, Buffer::NextLiveRays);
 }
 
-// The algorithm. Every dispatch's size is decided on the GPU; see Buffers.glsl for what flows between
-// the stages.
+// The algorithm. Every dispatch's size is decided on the GPU; see Buffers.glsl for what flows
+// between the stages.
 void ProgressivePipeline::RunPass()
 {
   this->Gpu.Dispatch(Stage::BeginPass, 1);
@@ -250,8 +258,8 @@ void ProgressivePipeline::RunPass()
   this->MarkPassEnd();
 }
 
-// Zero work groups unless BeginPass or BeginShading found the cache too full; nothing at all where the
-// cache holds the whole volume.
+// Zero work groups unless BeginPass or BeginShading found the cache too full; nothing at all where
+// the cache holds the whole volume.
 void ProgressivePipeline::EvictBlocks()
 {
   if (this->Extent.Slots >= this->Scene.Blocks[3])
@@ -283,7 +291,8 @@ void ProgressivePipeline::RunPasses(int maximum, bool eager, const std::function
     stalled = gotOn ? 0 : stalled + 1;
     if (stalled == PatienceWithNone)
     {
-      this->Gpu.Fail("makes no progress: the GPU may have been lost; release the graphics resources and render again");
+      this->Gpu.Fail("makes no progress: the GPU may have been lost; release the graphics "
+                     "resources and render again");
     }
     if (control.PassIndex - this->Passes.size() > PassRecords / 2)
     {
@@ -321,7 +330,8 @@ void ProgressivePipeline::ShadeHits(bool again)
     stalled = unshaded == before ? stalled + 1 : 0;
     if (unshaded > 0 && stalled == PatienceWithNone)
     {
-      this->Gpu.Fail("cannot shade: the GPU may have been lost; release the graphics resources and render again");
+      this->Gpu.Fail("cannot shade: the GPU may have been lost; release the graphics resources and "
+                     "render again");
     }
   } while (unshaded > 0 && this->GetError().empty() && this->GrowCache());
   this->ReadPassRecords();

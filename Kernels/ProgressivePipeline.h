@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
-// Drives the stages of progressive speculative iso-raycasting (Usher, Dyken and Kumar, LDAV 2023) on the
-// current OpenGL context. It owns the GPU's objects and knows nothing of VTK's scene: the mapper
-// (vtkProgressiveIsosurfaceMapper) translates that into a SceneBlock and calls, in this order,
-// SetVolume, SetScene, Start, RunPasses, ShadeHits, Composite.
+// Drives the stages of progressive speculative iso-raycasting (Usher, Dyken and Kumar, LDAV 2023)
+// on the current OpenGL context. It owns the GPU's objects and knows nothing of VTK's scene: the
+// mapper (vtkProgressiveIsosurfaceMapper) translates that into a SceneBlock and calls, in this
+// order, SetVolume, SetScene, Start, RunPasses, ShadeHits, Composite.
 #ifndef ProgressivePipeline_h
 #define ProgressivePipeline_h
 
@@ -44,16 +44,16 @@ public:
 
   /// Upload a volume and compute its macrocell grid. What the cache held is void.
   bool SetVolume(const PipelineVolume& volume);
-  /// Bounds of the block cache in bytes (0: automatic), the greatest speculation count (1: off), and the
-  /// number of rays from which on a block's rays are grouped (negative: automatic).
+  /// Bounds of the block cache in bytes (0: automatic), the greatest speculation count (1: off),
+  /// and the number of rays from which on a block's rays are grouped (negative: automatic).
   void SetLimits(std::int64_t cacheBytes, int speculation, int grouping);
   /// The image's size, camera, isovalue and look; the pipeline fills in what it knows itself.
   bool SetScene(const SceneBlock& scene);
 
   /// Begin a new image: all rays at the volume's border.
   void Start();
-  /// Do passes until the image is complete, `maximum` are done (0: no limit) or `stop` says so after a
-  /// pass. With `eager` no pass is submitted before the last one is known to be needed.
+  /// Do passes until the image is complete, `maximum` are done (0: no limit) or `stop` says so
+  /// after a pass. With `eager` no pass is submitted before the last one is known to be needed.
   void RunPasses(int maximum, bool eager, const std::function<bool()>& stop);
   /// Shade the hits that have come in. `again`: all of them, for a new look.
   void ShadeHits(bool again);
@@ -67,7 +67,8 @@ public:
   const SceneBlock& GetScene() const { return this->Scene; }
   const std::string& GetError() const { return this->Gpu.GetError(); }
 
-  /// Hit keys of all pixels, rows from the bottom (see Rays.glsl), and the parameter one stands for.
+  /// Hit keys of all pixels, rows from the bottom (see Rays.glsl), and the parameter one stands
+  /// for.
   std::vector<std::uint32_t> ReadHitKeys();
   /// Decode blocks first … first + count - 1 with the pipeline's own decoder: 64 values each.
   bool DecodeBlocks(std::int64_t first, std::int64_t count, float* values);

@@ -21,6 +21,8 @@ layout(std140, binding = 0) uniform Scene
   // centre (x, y); its parameter t is the depth along the view direction in world units.
   dvec4 RayOrigin[3];
   dvec4 RayDirection[3];
+  dvec4 EyeOrigin[3]; // the same in view coordinates
+  dvec4 EyeDirection[3];
   dvec4 RayRange;    // near and far clipping distance
   ivec4 Samples;     // samples per axis
   ivec4 Blocks;      // ZFP blocks per axis; w: their number
@@ -30,8 +32,6 @@ layout(std140, binding = 0) uniform Scene
   uvec4 Cache;       // slots, entries of the block map, speculation limit
   vec4 Isovalue;     // the isovalue as a sum of two floats
   mat4 NormalMatrix; // index-space gradient to view-space normal (3x3)
-  vec4 EyeOrigin[3]; // as RayOrigin and RayDirection, in view coordinates
-  vec4 EyeDirection[3];
   vec4 DepthTerms; // clip-space z and w as functions of t: z = x + y t, w = z + w t
   vec4 Color;      // of the isosurface; w unused
   vec4 Material;   // ambient, diffuse, specular, specular power

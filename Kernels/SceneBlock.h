@@ -19,6 +19,8 @@ struct SceneBlock
   // what a hit depends on: a change restarts the image
   double RayOrigin[3][4] = {};
   double RayDirection[3][4] = {};
+  double EyeOrigin[3][4] = {};
+  double EyeDirection[3][4] = {};
   double RayRange[4] = {};
   std::int32_t Samples[4] = {};
   std::int32_t Blocks[4] = {};
@@ -29,14 +31,13 @@ struct SceneBlock
   float Isovalue[4] = {};
   // what only its look depends on: a change shades the hits anew
   float NormalMatrix[16] = {};
-  float EyeOrigin[3][4] = {};
-  float EyeDirection[3][4] = {};
   float DepthTerms[4] = {};
   float Color[4] = {};
   float Material[4] = {};
   std::int32_t Lighting[4] = {};
   SceneLight Lights[MaximumLights] = {};
 };
-static_assert(sizeof(SceneBlock) == 7 * 32 + 7 * 16 + 64 + 6 * 16 + 4 * 16 + 16 * 32, "std140 layout of Scene.glsl");
+static_assert(
+  sizeof(SceneBlock) == 13 * 32 + 7 * 16 + 64 + 4 * 16 + 16 * 32, "std140 layout of Scene.glsl");
 
 #endif

@@ -42,7 +42,8 @@ void Unproject(vtkMatrix4x4* projection, bool perspective, double x, double y, d
   const double w = p.GetElement(3, 2) * z + p.GetElement(3, 3);
   const double rx = x * w - p.GetElement(0, 2) * z - p.GetElement(0, 3);
   const double ry = y * w - p.GetElement(1, 2) * z - p.GetElement(1, 3);
-  const double a = p.GetElement(0, 0), b = p.GetElement(0, 1), c = p.GetElement(1, 0), d = p.GetElement(1, 1);
+  const double a = p.GetElement(0, 0), b = p.GetElement(0, 1), c = p.GetElement(1, 0),
+               d = p.GetElement(1, 1);
   const double determinant = a * d - b * c;
   eye[0] = (d * rx - b * ry) / determinant;
   eye[1] = (a * ry - c * rx) / determinant;
@@ -68,7 +69,8 @@ EyeRays MakeEyeRays(vtkMatrix4x4* projection, int width, int height)
 }
 
 // Index space of the samples to world: extent, origin, spacing, direction, the prop's matrix.
-void SamplesToWorld(vtkVolume* volume, vtkImageData* image, vtkCompressedVolume* compressed, vtkMatrix4x4* matrix)
+void SamplesToWorld(
+  vtkVolume* volume, vtkImageData* image, vtkCompressedVolume* compressed, vtkMatrix4x4* matrix)
 {
   const double shift = compressed->GetAssociation() == vtkCompressedVolume::CellData ? 0.5 : 0.0;
   const int* extent = image->GetExtent();
@@ -87,7 +89,8 @@ void TranslateRays(const EyeRays& rays, vtkMatrix4x4* eyeToIndex, SceneBlock& sc
   {
     const double point = i == 0 ? 1.0 : 0.0; // only the base is a point, the rest are vectors
     const double origin[4] = { rays.Origin[i][0], rays.Origin[i][1], rays.Origin[i][2], point };
-    const double direction[4] = { rays.Direction[i][0], rays.Direction[i][1], rays.Direction[i][2], 0.0 };
+    const double direction[4] = { rays.Direction[i][0], rays.Direction[i][1], rays.Direction[i][2],
+      0.0 };
     double result[4];
     eyeToIndex->MultiplyPoint(origin, result);
     std::copy(result, result + 3, scene.RayOrigin[i]);
@@ -95,13 +98,14 @@ void TranslateRays(const EyeRays& rays, vtkMatrix4x4* eyeToIndex, SceneBlock& sc
     std::copy(result, result + 3, scene.RayDirection[i]);
     for (int axis = 0; axis < 3; ++axis)
     {
-      scene.EyeOrigin[i][axis] = static_cast<float>(rays.Origin[i][axis]);
-      scene.EyeDirection[i][axis] = static_cast<float>(rays.Direction[i][axis]);
+      scene.EyeOrigin[i][axis] = rays.Origin[i][axis];
+      scene.EyeDirection[i][axis] = rays.Direction[i][axis];
     }
   }
 }
 
-// Gradients transform by the transposed inverse; the scale does not matter, so keep it in float's range.
+// Gradients transform by the transposed inverse; the scale does not matter, so keep it in float's
+// range.
 void TranslateNormals(vtkMatrix4x4* eyeToIndex, SceneBlock& scene)
 {
   double largest = 0.0;
@@ -116,7 +120,8 @@ void TranslateNormals(vtkMatrix4x4* eyeToIndex, SceneBlock& scene)
   {
     for (int column = 0; column < 3; ++column)
     {
-      scene.NormalMatrix[4 * row + column] = static_cast<float>(eyeToIndex->GetElement(row, column) / largest);
+      scene.NormalMatrix[4 * row + column] =
+        static_cast<float>(eyeToIndex->GetElement(row, column) / largest);
     }
   }
 }
@@ -127,7 +132,8 @@ void TranslateLights(vtkRenderer* renderer, vtkMatrix4x4* worldToEye, SceneBlock
   vtkLightCollection* lights = renderer->GetLights();
   lights->InitTraversal(iterator);
   int count = 0;
-  for (vtkLight* light = lights->GetNextLight(iterator); light; light = lights->GetNextLight(iterator))
+  for (vtkLight* light = lights->GetNextLight(iterator); light;
+       light = lights->GetNextLight(iterator))
   {
     if (!light->GetSwitch() || count == SceneBlock::MaximumLights)
     {
@@ -155,7 +161,8 @@ void TranslateLights(vtkRenderer* renderer, vtkMatrix4x4* worldToEye, SceneBlock
   scene.Lighting[0] = count;
 }
 
-void TranslateLook(vtkRenderer* renderer, vtkVolumeProperty* property, double isovalue, vtkMatrix4x4* worldToEye, SceneBlock& scene)
+void TranslateLook(vtkRenderer* renderer, vtkVolumeProperty* property, double isovalue,
+  vtkMatrix4x4* worldToEye, SceneBlock& scene)
 {
   double color[3];
   if (property->GetColorChannels() == 1)
@@ -174,7 +181,8 @@ void TranslateLook(vtkRenderer* renderer, vtkVolumeProperty* property, double is
   if (property->GetShade())
   {
     TranslateLights(renderer, worldToEye, scene);
-    brightness = scene.Lighting[0] > 0 ? 1.0 : property->GetAmbient(); // in the dark no normal is needed
+    brightness =
+      scene.Lighting[0] > 0 ? 1.0 : property->GetAmbient(); // in the dark no normal is needed
   }
   for (int i = 0; i < 3; ++i)
   {
@@ -197,12 +205,15 @@ constexpr std::size_t LookBegins = offsetof(SceneBlock, NormalMatrix);
 constexpr std::size_t ExactBegins = offsetof(SceneBlock, Samples);
 }
 
-SceneBlock TranslateScene(vtkRenderer* renderer, vtkVolume* volume, vtkImageData* image, vtkCompressedVolume* compressed)
+SceneBlock TranslateScene(
+  vtkRenderer* renderer, vtkVolume* volume, vtkImageData* image, vtkCompressedVolume* compressed)
 {
   SceneBlock scene;
-  renderer->GetTiledSizeAndOrigin(&scene.Image[0], &scene.Image[1], &scene.Image[2], &scene.Image[3]);
+  renderer->GetTiledSizeAndOrigin(
+    &scene.Image[0], &scene.Image[1], &scene.Image[2], &scene.Image[3]);
   vtkCamera* camera = renderer->GetActiveCamera();
-  vtkMatrix4x4* projection = camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1, 1);
+  vtkMatrix4x4* projection =
+    camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1, 1);
   vtkMatrix4x4* worldToEye = camera->GetModelViewTransformMatrix();
   vtkNew<vtkMatrix4x4> eyeToIndex;
   SamplesToWorld(volume, image, compressed, eyeToIndex);
@@ -229,7 +240,8 @@ bool SameHits(const SceneBlock& a, const SceneBlock& b)
 {
   for (int i = 0; i < 3; ++i)
   {
-    if (!NearlySame(a.RayOrigin[i], b.RayOrigin[i]) || !NearlySame(a.RayDirection[i], b.RayDirection[i]))
+    if (!NearlySame(a.RayOrigin[i], b.RayOrigin[i]) ||
+      !NearlySame(a.RayDirection[i], b.RayDirection[i]))
     {
       return false;
     }
@@ -242,7 +254,8 @@ bool SameLook(const SceneBlock& a, const SceneBlock& b)
 {
   const char* bytesA = reinterpret_cast<const char*>(&a);
   const char* bytesB = reinterpret_cast<const char*>(&b);
-  return std::memcmp(bytesA + LookBegins, bytesB + LookBegins, sizeof(SceneBlock) - LookBegins) == 0;
+  return std::memcmp(bytesA + LookBegins, bytesB + LookBegins, sizeof(SceneBlock) - LookBegins) ==
+    0;
 }
 
 void KeepHits(const SceneBlock& from, SceneBlock& to)
@@ -261,15 +274,16 @@ float HitDistance(const SceneBlock& scene, int x, int y, std::uint32_t key)
   double eyeLength = 0.0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double origin = scene.RayOrigin[0][axis] + px * scene.RayOrigin[1][axis] + py * scene.RayOrigin[2][axis];
-    const double direction =
-      scene.RayDirection[0][axis] + px * scene.RayDirection[1][axis] + py * scene.RayDirection[2][axis];
+    const double origin =
+      scene.RayOrigin[0][axis] + px * scene.RayOrigin[1][axis] + py * scene.RayOrigin[2][axis];
+    const double direction = scene.RayDirection[0][axis] + px * scene.RayDirection[1][axis] +
+      py * scene.RayDirection[2][axis];
     const double inverse = std::abs(direction) > 1e-290 ? 1.0 / direction : 1e290;
     const double first = -origin * inverse;
     const double last = (scene.Samples[axis] - 1 - origin) * inverse;
     enter = std::max(enter, std::min(first, last));
     leave = std::min(leave, std::max(first, last));
-    const double eye = static_cast<double>(scene.EyeDirection[0][axis]) + px * scene.EyeDirection[1][axis] +
+    const double eye = scene.EyeDirection[0][axis] + px * scene.EyeDirection[1][axis] +
       py * scene.EyeDirection[2][axis];
     eyeLength += eye * eye;
   }

@@ -14,9 +14,10 @@ class vtkImageData;
 class vtkRenderer;
 class vtkVolume;
 
-/// Rays, image, isovalue, lights and material of a volume seen by a renderer's camera. Samples, Blocks,
-/// CoarseCells, Payload and Cache are the pipeline's own business.
-SceneBlock TranslateScene(vtkRenderer* renderer, vtkVolume* volume, vtkImageData* image, vtkCompressedVolume* compressed);
+/// Rays, image, isovalue, lights and material of a volume seen by a renderer's camera. Samples,
+/// Blocks, CoarseCells, Payload and Cache are the pipeline's own business.
+SceneBlock TranslateScene(
+  vtkRenderer* renderer, vtkVolume* volume, vtkImageData* image, vtkCompressedVolume* compressed);
 
 /// Do two scenes have the same hits? Cameras are compared with a relative tolerance of 1e-7:
 /// vtkWindowToImageFilter perturbs the view angle by rounding.
@@ -28,8 +29,9 @@ bool SameLook(const SceneBlock& a, const SceneBlock& b);
 /// Copy what hits depend on.
 void KeepHits(const SceneBlock& from, SceneBlock& to);
 
-/// Distance in world units from the camera (in parallel projection: from its plane) to the hit that a key
-/// of Rays.glsl stands for; infinity for no hit. `x`, `y`: pixel, from the viewport's bottom left.
+/// Distance in world units from the camera (in parallel projection: from its plane) to the hit that
+/// a key of Rays.glsl stands for; infinity for no hit. `x`, `y`: pixel, from the viewport's bottom
+/// left.
 float HitDistance(const SceneBlock& scene, int x, int y, std::uint32_t key);
 
 #endif

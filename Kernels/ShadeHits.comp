@@ -110,10 +110,11 @@ vec3 Shade(uint pixel)
     return scene.Color.rgb;
   }
   HitPoint hit = HitOf(pixel);
-  vec2 xy = vec2(float(pixel % uint(scene.Image.x)) + 0.5, float(pixel / uint(scene.Image.x)) + 0.5);
-  vec3 origin = scene.EyeOrigin[0].xyz + xy.x * scene.EyeOrigin[1].xyz + xy.y * scene.EyeOrigin[2].xyz;
+  double x = double(pixel % uint(scene.Image.x)) + 0.5LF;
+  double y = double(pixel / uint(scene.Image.x)) + 0.5LF;
+  vec3 origin = vec3(scene.EyeOrigin[0].xyz + x * scene.EyeOrigin[1].xyz + y * scene.EyeOrigin[2].xyz);
   vec3 direction =
-    scene.EyeDirection[0].xyz + xy.x * scene.EyeDirection[1].xyz + xy.y * scene.EyeDirection[2].xyz;
+    vec3(scene.EyeDirection[0].xyz + x * scene.EyeDirection[1].xyz + y * scene.EyeDirection[2].xyz);
   vec3 toViewer = -normalize(direction);
   vec3 normal = ViewNormal(Gradient(hit), toViewer);
   return Illuminate(origin + float(hit.T) * direction, normal, toViewer);

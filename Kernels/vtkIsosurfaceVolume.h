@@ -25,7 +25,8 @@ public:
 
   ///@{
   /**
-   * The opaque pass draws the mapper, the volumetric pass nothing. Return whether anything was drawn.
+   * The opaque pass draws the mapper, the volumetric pass nothing. Return whether anything was
+   * drawn.
    */
   int RenderOpaqueGeometry(vtkViewport* viewport) override;
   int RenderVolumetricGeometry(vtkViewport* viewport) override;

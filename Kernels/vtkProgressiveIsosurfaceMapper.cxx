@@ -64,7 +64,8 @@ public:
   vtkSmartPointer<vtkImageData> Compressed; // the input, or what it was compressed to
   vtkNew<vtkCompressedVolume> Volume;
   // what Compressed was made from, when, and how: image, array, rate, component
-  using SourceKey = std::tuple<vtkImageData*, vtkMTimeType, vtkDataArray*, vtkMTimeType, double, int>;
+  using SourceKey =
+    std::tuple<vtkImageData*, vtkMTimeType, vtkDataArray*, vtkMTimeType, double, int>;
   SourceKey Source;
   vtkTimeStamp VolumeTime; // of Compressed; the GPU has the one of UploadTime
   vtkTimeStamp UploadTime;
@@ -103,15 +104,18 @@ bool vtkProgressiveIsosurfaceMapper::Internals::Report(const std::string& proble
 //------------------------------------------------------------------------------
 // The input
 //------------------------------------------------------------------------------
-vtkDataArray* vtkProgressiveIsosurfaceMapper::Internals::FindArray(vtkImageData* image, bool& cellData)
+vtkDataArray* vtkProgressiveIsosurfaceMapper::Internals::FindArray(
+  vtkImageData* image, bool& cellData)
 {
   int cellFlag = 0;
-  vtkDataArray* array = vtkAbstractMapper::GetScalars(image, this->Owner->ScalarMode, this->Owner->ArrayAccessMode,
-    this->Owner->ArrayId, this->Owner->ArrayName, cellFlag);
+  vtkDataArray* array = vtkAbstractMapper::GetScalars(image, this->Owner->ScalarMode,
+    this->Owner->ArrayAccessMode, this->Owner->ArrayId, this->Owner->ArrayName, cellFlag);
   cellData = cellFlag == 1;
-  if (!array && this->Owner->ScalarMode == VTK_SCALAR_MODE_DEFAULT && image->GetPointData()->GetNumberOfArrays() > 0)
+  if (!array && this->Owner->ScalarMode == VTK_SCALAR_MODE_DEFAULT &&
+    image->GetPointData()->GetNumberOfArrays() > 0)
   {
-    array = image->GetPointData()->GetArray(0); // no active scalars: the first array, as the filters do
+    array =
+      image->GetPointData()->GetArray(0); // no active scalars: the first array, as the filters do
   }
   return array;
 }
@@ -131,8 +135,8 @@ vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceMapper::Internals::Compres
   }
   vtkNew<vtkImageZFPCompress> compress;
   compress->SetInputData(single);
-  compress->SetInputArrayToProcess(
-    0, 0, 0, cellData ? vtkDataObject::FIELD_ASSOCIATION_CELLS : vtkDataObject::FIELD_ASSOCIATION_POINTS,
+  compress->SetInputArrayToProcess(0, 0, 0,
+    cellData ? vtkDataObject::FIELD_ASSOCIATION_CELLS : vtkDataObject::FIELD_ASSOCIATION_POINTS,
     vtkDataSetAttributes::SCALARS);
   compress->SetRate(this->Owner->Rate);
   compress->SetComponent(this->Owner->Component);
@@ -168,17 +172,19 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateVolume()
     return this->Report("the input image has no scalars: select an array that it has");
   }
   // of the mapper's own parameters only these make a plain image another volume
-  const SourceKey key = { image, image->GetMTime(), array, array ? array->GetMTime() : 0, array ? self->Rate : 0.0,
-    array ? self->Component : 0 };
+  const SourceKey key = { image, image->GetMTime(), array, array ? array->GetMTime() : 0,
+    array ? self->Rate : 0.0, array ? self->Component : 0 };
   if (this->Compressed && key == this->Source)
   {
     return true;
   }
   this->ReleaseInput();
-  vtkSmartPointer<vtkImageData> volume = compressed ? vtkSmartPointer<vtkImageData>(image) : this->Compress(image, array, cellData);
+  vtkSmartPointer<vtkImageData> volume =
+    compressed ? vtkSmartPointer<vtkImageData>(image) : this->Compress(image, array, cellData);
   if (!this->Volume->Read(volume))
   {
-    return compressed ? this->Report(this->Volume->GetErrorMessage()) : false; // the filter has told why
+    return compressed ? this->Report(this->Volume->GetErrorMessage())
+                      : false; // the filter has told why
   }
   this->Compressed = volume;
   this->Source = key;
@@ -238,7 +244,8 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UploadVolume()
 // The image
 //------------------------------------------------------------------------------
 // Restarts the image where its hits change, and orders new shading where only its look does.
-bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(vtkRenderer* renderer, vtkVolume* volume)
+bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(
+  vtkRenderer* renderer, vtkVolume* volume)
 {
   SceneBlock scene = TranslateScene(renderer, volume, this->Compressed, this->Volume);
   const bool sameHits = this->HaveScene && SameHits(this->Scene, scene);
@@ -268,7 +275,8 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(vtkRenderer* rendere
 bool vtkProgressiveIsosurfaceMapper::Internals::MayRefineLater(vtkOpenGLRenderWindow* window) const
 {
   vtkRenderWindowInteractor* interactor = window->GetInteractor();
-  return interactor && interactor->GetInitialized() && !window->GetOffScreenRendering() && window->GetSwapBuffers();
+  return interactor && interactor->GetInitialized() && !window->GetOffScreenRendering() &&
+    window->GetSwapBuffers();
 }
 
 void vtkProgressiveIsosurfaceMapper::Internals::Refine(vtkOpenGLRenderWindow* window)
@@ -290,7 +298,8 @@ void vtkProgressiveIsosurfaceMapper::Internals::Refine(vtkOpenGLRenderWindow* wi
   if (unfinished || this->ShadeAgain)
   {
     this->Pipeline.ShadeHits(this->ShadeAgain);
-    this->TotalMilliseconds += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    this->TotalMilliseconds +=
+      std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   }
   this->ShadeAgain = false;
 }
@@ -326,7 +335,8 @@ void vtkProgressiveIsosurfaceMapper::Internals::RequestRender(vtkOpenGLRenderWin
       this->Interactor->RemoveObserver(this->TimerObserver);
     }
     this->Interactor = interactor;
-    this->TimerObserver = interactor->AddObserver(vtkCommand::TimerEvent, this, &Internals::OnTimer);
+    this->TimerObserver =
+      interactor->AddObserver(vtkCommand::TimerEvent, this, &Internals::OnTimer);
     this->TimerId = -1;
   }
   if (this->TimerId < 0)
@@ -359,12 +369,14 @@ void vtkProgressiveIsosurfaceMapper::Internals::FillStatistics()
   {
     const TimedPass& p = passes[i];
     const double row[] = { static_cast<double>(i), static_cast<double>(p.ActiveRays),
-      static_cast<double>(p.Speculation), static_cast<double>(p.Pairs), static_cast<double>(p.VisibleBlocks),
-      static_cast<double>(p.ActiveBlocks), static_cast<double>(p.DecodedBlocks),
-      static_cast<double>(p.CachedBlocks), 1.0 - p.RemainingRays / pixels, p.ElapsedMilliseconds };
+      static_cast<double>(p.Speculation), static_cast<double>(p.Pairs),
+      static_cast<double>(p.VisibleBlocks), static_cast<double>(p.ActiveBlocks),
+      static_cast<double>(p.DecodedBlocks), static_cast<double>(p.CachedBlocks),
+      1.0 - p.RemainingRays / pixels, p.ElapsedMilliseconds };
     for (int column = 0; column < table->GetNumberOfColumns(); ++column)
     {
-      vtkDoubleArray::SafeDownCast(table->GetColumn(column))->SetValue(static_cast<vtkIdType>(i), row[column]);
+      vtkDoubleArray::SafeDownCast(table->GetColumn(column))
+        ->SetValue(static_cast<vtkIdType>(i), row[column]);
     }
   }
   const PipelineResources& resources = this->Pipeline.GetResources();
@@ -457,10 +469,12 @@ void vtkProgressiveIsosurfaceMapper::Render(vtkRenderer* renderer, vtkVolume* vo
   }
   if (volume->GetProperty()->GetIsoSurfaceValues()->GetNumberOfContours() > 1)
   {
-    vtkWarningMacro("renders one isosurface: the property's first isovalue is taken, the others are not");
+    vtkWarningMacro(
+      "renders one isosurface: the property's first isovalue is taken, the others are not");
   }
   window->MakeCurrent();
-  if (!this->Impl->BindWindow(window) || !this->Impl->UploadVolume() || !this->Impl->UpdateScene(renderer, volume))
+  if (!this->Impl->BindWindow(window) || !this->Impl->UploadVolume() ||
+    !this->Impl->UpdateScene(renderer, volume))
   {
     return;
   }
@@ -512,7 +526,8 @@ bool vtkProgressiveIsosurfaceMapper::GetDepthImage(vtkImageData* image)
   return true;
 }
 
-bool vtkProgressiveIsosurfaceMapper::DecodeOnGPU(vtkRenderWindow* window, vtkImageData* compressed, vtkFloatArray* samples)
+bool vtkProgressiveIsosurfaceMapper::DecodeOnGPU(
+  vtkRenderWindow* window, vtkImageData* compressed, vtkFloatArray* samples)
 {
   auto* glWindow = vtkOpenGLRenderWindow::SafeDownCast(window);
   vtkNew<vtkCompressedVolume> source;
@@ -536,7 +551,8 @@ bool vtkProgressiveIsosurfaceMapper::DecodeOnGPU(vtkRenderWindow* window, vtkIma
   glWindow->GetShaderCache()->ReleaseCurrentShader();
   bool good = pipeline.Initialize() && pipeline.SetVolume(volume);
   samples->SetNumberOfComponents(1);
-  samples->SetNumberOfTuples(static_cast<vtkIdType>(volume.Samples[0]) * volume.Samples[1] * volume.Samples[2]);
+  samples->SetNumberOfTuples(
+    static_cast<vtkIdType>(volume.Samples[0]) * volume.Samples[1] * volume.Samples[2]);
   constexpr std::int64_t batch = 4096;
   std::vector<float> values(64 * batch);
   int blocks[3];
@@ -554,7 +570,8 @@ bool vtkProgressiveIsosurfaceMapper::DecodeOnGPU(vtkRenderWindow* window, vtkIma
       const int z = static_cast<int>(4 * (block / blocks[0] / blocks[1]) + i / 16 % 4);
       if (x < volume.Samples[0] && y < volume.Samples[1] && z < volume.Samples[2])
       {
-        samples->SetValue(x + volume.Samples[0] * (y + static_cast<vtkIdType>(volume.Samples[1]) * z), values[i]);
+        samples->SetValue(
+          x + volume.Samples[0] * (y + static_cast<vtkIdType>(volume.Samples[1]) * z), values[i]);
       }
     }
   }

@@ -4,22 +4,24 @@
  * @class   vtkProgressiveIsosurfaceMapper
  * @brief   progressive isosurfaces of ZFP-compressed volumes within a small memory footprint
  *
- * Renders the isosurface of a compressed volume (see vtkCompressedVolume) by progressive speculative
- * iso-raycasting on the GPU: rays travel in a wavefront, only the 4^3 blocks that they meet are
- * decompressed into a cache, the image shows after every pass, and slots of rays that are done let the
- * others test blocks ahead (Usher, Dyken and Kumar, LDAV 2023). A plain vtkImageData as input is
- * compressed on the fly, so that the mapper drops in for vtkGPUVolumeRayCastMapper in isosurface blend
- * mode. Not for translucent or several isosurfaces in one mapper, and not for direct volume rendering.
+ * Renders the isosurface of a compressed volume (see vtkCompressedVolume) by progressive
+ * speculative iso-raycasting on the GPU: rays travel in a wavefront, only the 4^3 blocks that they
+ * meet are decompressed into a cache, the image shows after every pass, and slots of rays that are
+ * done let the others test blocks ahead (Usher, Dyken and Kumar, LDAV 2023). A plain vtkImageData
+ * as input is compressed on the fly, so that the mapper drops in for vtkGPUVolumeRayCastMapper in
+ * isosurface blend mode. Not for translucent or several isosurfaces in one mapper, and not for
+ * direct volume rendering.
  *
- * The surface is that of the trilinear interpolant of the decompressed values, where values below the
- * isovalue meet values that are not. The isovalue is the first of vtkVolumeProperty::
- * GetIsoSurfaceValues(), its colour that of the property's transfer function there; shading, ambient,
- * diffuse, specular and specular power are the property's too.
+ * The surface is that of the trilinear interpolant of the decompressed values, where values below
+ * the isovalue meet values that are not. The isovalue is the first of vtkVolumeProperty::
+ * GetIsoSurfaceValues(), its colour that of the property's transfer function there; shading,
+ * ambient, diffuse, specular and specular power are the property's too.
  *
- * Render() in an interactive window performs passes for TimeAllowance seconds, shows what is there and
- * asks the interactor for another render; everywhere else (off-screen, screenshots, no interactor) it
- * completes the image. A change of camera, size, isovalue or input restarts it. The complete image does
- * not depend on the speculation, the cache's size or the number of passes per render.
+ * Render() in an interactive window performs passes for TimeAllowance seconds, shows what is there
+ * and asks the interactor for another render; everywhere else (off-screen, screenshots, no
+ * interactor) it completes the image. A change of camera, size, isovalue or input restarts it. The
+ * complete image does not depend on the speculation, the cache's size or the number of passes per
+ * render.
  *
  * Needs OpenGL 4.3. Add it to a scene with a vtkIsosurfaceVolume, which draws in the opaque pass; a
  * plain vtkVolume works as well but is drawn after translucent geometry.
@@ -51,8 +53,8 @@ public:
 
   ///@{
   /**
-   * Rate in bits per voxel at which plain input is compressed, 9/64 … 32. Default 8. Compressed input
-   * keeps its own.
+   * Rate in bits per voxel at which plain input is compressed, 9/64 … 32. Default 8. Compressed
+   * input keeps its own.
    */
   vtkSetClampMacro(Rate, double, 9.0 / 64.0, 32.0);
   vtkGetMacro(Rate, double);
@@ -76,9 +78,9 @@ public:
 
   ///@{
   /**
-   * Bound in bytes on the GPU memory of the block cache with its bookkeeping; 0 (default): automatic,
-   * at most 1 GiB. The cache starts small and grows up to this bound as the scene demands. It never
-   * gets smaller than the 128 blocks that the algorithm needs to get on.
+   * Bound in bytes on the GPU memory of the block cache with its bookkeeping; 0 (default):
+   * automatic, at most 1 GiB. The cache starts small and grows up to this bound as the scene
+   * demands. It never gets smaller than the 128 blocks that the algorithm needs to get on.
    */
   vtkSetClampMacro(CacheLimit, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
   vtkGetMacro(CacheLimit, vtkTypeInt64);
@@ -86,9 +88,9 @@ public:
 
   ///@{
   /**
-   * Blocks that fewer rays visit in a pass are not given a work group each: their rays are intersected
-   * one by one. Same result; which is faster depends on the GPU. -1 (default): automatic, 8 on GPUs and 0
-   * on software renderers.
+   * Blocks that fewer rays visit in a pass are not given a work group each: their rays are
+   * intersected one by one. Same result; which is faster depends on the GPU. -1 (default):
+   * automatic, 8 on GPUs and 0 on software renderers.
    */
   vtkSetClampMacro(GroupingThreshold, int, -1, VTK_INT_MAX);
   vtkGetMacro(GroupingThreshold, int);
@@ -126,9 +128,9 @@ public:
 
   /**
    * Fill `image` with the depths of the last Render(): float scalars "Depth", one a pixel of the
-   * viewport in VTK's row order, distance along the ray in world units from the camera's position (in
-   * parallel projection from the camera plane), infinity where no surface was hit. Returns false, with an
-   * error event, where nothing was rendered yet.
+   * viewport in VTK's row order, distance along the ray in world units from the camera's position
+   * (in parallel projection from the camera plane), infinity where no surface was hit. Returns
+   * false, with an error event, where nothing was rendered yet.
    */
   bool GetDepthImage(vtkImageData* image);
 
@@ -139,8 +141,8 @@ public:
   bool DecodeOnGPU(vtkRenderWindow* window, vtkImageData* compressed, vtkFloatArray* samples);
 
   /**
-   * OpenGL errors seen since the graphics resources were made. Counted where the environment variable
-   * PROGISO_GL_DEBUG is set to 1.
+   * OpenGL errors seen since the graphics resources were made. Counted where the environment
+   * variable PROGISO_GL_DEBUG is set to 1.
    */
   int GetNumberOfGLErrors();
 

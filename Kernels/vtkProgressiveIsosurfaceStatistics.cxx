@@ -11,8 +11,8 @@ vtkStandardNewMacro(vtkProgressiveIsosurfaceStatistics);
 
 vtkProgressiveIsosurfaceStatistics::vtkProgressiveIsosurfaceStatistics()
 {
-  for (const char* name : { "pass", "active_rays", "speculation", "pairs", "visible_blocks", "active_blocks",
-         "decoded_blocks", "cached_blocks", "completed", "elapsed_ms" })
+  for (const char* name : { "pass", "active_rays", "speculation", "pairs", "visible_blocks",
+         "active_blocks", "decoded_blocks", "cached_blocks", "completed", "elapsed_ms" })
   {
     vtkNew<vtkDoubleArray> column;
     column->SetName(name);
@@ -43,8 +43,10 @@ int vtkProgressiveIsosurfaceStatistics::GetNumberOfPasses()
 
 double vtkProgressiveIsosurfaceStatistics::GetPassValue(int pass, const char* column)
 {
-  auto* values = vtkDoubleArray::SafeDownCast(column ? this->Passes->GetColumnByName(column) : nullptr);
-  return values && pass >= 0 && pass < values->GetNumberOfTuples() ? values->GetValue(pass) : vtkMath::Nan();
+  auto* values =
+    vtkDoubleArray::SafeDownCast(column ? this->Passes->GetColumnByName(column) : nullptr);
+  return values && pass >= 0 && pass < values->GetNumberOfTuples() ? values->GetValue(pass)
+                                                                   : vtkMath::Nan();
 }
 
 vtkTable* vtkProgressiveIsosurfaceStatistics::GetPassTable()

@@ -4,23 +4,24 @@
  * @class   vtkProgressiveIsosurfaceStatistics
  * @brief   what the last image of a vtkProgressiveIsosurfaceMapper cost
  *
- * The one structure for C++, Python and the command line. Per pass, in the columns of GetPassTable():
+ * The one structure for C++, Python and the command line. Per pass, in the columns of
+ * GetPassTable():
  *
- * | column         | meaning                                                                         |
- * | -------------- | ------------------------------------------------------------------------------- |
- * | pass           | 0, 1, …                                                                         |
- * | active_rays    | rays that took part                                                             |
- * | speculation    | blocks that a ray might ask for (N_spec, section 4 of the paper)                |
- * | pairs          | ray-block pairs that were intersected                                           |
- * | visible_blocks | blocks that rays were intersected with                                          |
- * | active_blocks  | those and the neighbours that their dual grids reach into                       |
- * | decoded_blocks | active blocks that the cache did not hold                                       |
- * | cached_blocks  | cache slots in use after the pass                                               |
- * | completed      | fraction of the pixels that are complete after the pass, 0 … 1                  |
- * | elapsed_ms     | milliseconds from the start of the image to the end of the pass                 |
+ * | column         | meaning | | -------------- |
+ * ------------------------------------------------------------------------------- | | pass | 0, 1,
+ * …                                                                         | | active_rays    |
+ * rays that took part                                                             | | speculation
+ * | blocks that a ray might ask for (N_spec, section 4 of the paper)                | | pairs |
+ * ray-block pairs that were intersected                                           | |
+ * visible_blocks | blocks that rays were intersected with | | active_blocks  | those and the
+ * neighbours that their dual grids reach into                       | | decoded_blocks | active
+ * blocks that the cache did not hold                                       | | cached_blocks  |
+ * cache slots in use after the pass                                               | | completed |
+ * fraction of the pixels that are complete after the pass, 0 … 1                  | | elapsed_ms |
+ * milliseconds from the start of the image to the end of the pass                 |
  *
- * Times are the GPU's (timer queries), or wall clock where the renderer is Mesa's llvmpipe, whose timer
- * queries are not credible.
+ * Times are the GPU's (timer queries), or wall clock where the renderer is Mesa's llvmpipe, whose
+ * timer queries are not credible.
  *
  * @sa vtkProgressiveIsosurfaceMapper
  */
@@ -46,8 +47,8 @@ public:
 
   ///@{
   /**
-   * The passes of the image so far, one row each. GetPassValue() returns NaN where there is no such pass
-   * or column.
+   * The passes of the image so far, one row each. GetPassValue() returns NaN where there is no such
+   * pass or column.
    */
   int GetNumberOfPasses();
   double GetPassValue(int pass, const char* column);
@@ -61,8 +62,8 @@ public:
 
   ///@{
   /**
-   * Bytes of GPU memory the mapper holds: in total, of the compressed stream, and by named buffer. The
-   * buffers of the block cache have names that begin with "cache_".
+   * Bytes of GPU memory the mapper holds: in total, of the compressed stream, and by named buffer.
+   * The buffers of the block cache have names that begin with "cache_".
    */
   vtkTypeInt64 GetTotalBytes();
   vtkTypeInt64 GetCompressedBytes();
@@ -73,8 +74,8 @@ public:
 
   ///@{
   /**
-   * Stages that ran for this image (and for its volume), and those left out because the scene did not
-   * need them, by the names of their GLSL files.
+   * Stages that ran for this image (and for its volume), and those left out because the scene did
+   * not need them, by the names of their GLSL files.
    */
   int GetNumberOfStages() { return static_cast<int>(this->Stages.size()); }
   const char* GetStage(int i);
