@@ -20,10 +20,10 @@
  * Render() in an interactive window performs passes for TimeAllowance seconds, shows what is there
  * and asks the interactor for another render; everywhere else (off-screen, no interactor, or a
  * window that does not swap buffers, as when ParaView takes a screenshot) it completes the image. A
- * vtkWindowToImageFilter on an interactive window gives no such sign: let GetConverged() be true, or
- * the time allowance be large, before it captures. A change of camera, size, isovalue or input
- * restarts the image. The complete image does not depend on the speculation, the cache's size or the
- * number of passes per render.
+ * vtkWindowToImageFilter on an interactive window gives no such sign: let GetConverged() be true,
+ * or the time allowance be large, before it captures. A change of camera, size, isovalue or input
+ * restarts the image. The complete image does not depend on the speculation, the cache's size or
+ * the number of passes per render.
  *
  * Needs OpenGL 4.3. Add it to a scene with a vtkIsosurfaceVolume, which draws in the opaque pass; a
  * plain vtkVolume works as well but is drawn after translucent geometry.
