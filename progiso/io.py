@@ -206,11 +206,15 @@ def _check_plain(image, path, compressed):
 
 
 def _write_vti(image, path, progress=None):
-    """Raw appended data, not squeezed a second time when it is a compressed stream."""
+    """Appended data, not squeezed a second time when it is a compressed stream.
+
+    In base64, a third larger than raw: Debian 12's ParaView cannot read raw data since a security
+    update of its XML parser (libexpat1 2.5.0-1+deb12u2).
+    """
     writer = vtkXMLImageDataWriter()
     writer.SetInputData(image)
     writer.SetDataModeToAppended()
-    writer.EncodeAppendedDataOff()
+    writer.EncodeAppendedDataOn()
     writer.SetHeaderTypeToUInt64()
     if is_compressed(image):
         writer.SetCompressorTypeToNone()
