@@ -23,9 +23,9 @@ look(view)
 direct = screenshot(view, "files_direct.png")
 simple.Hide(compressed, view)
 
-# VTI keeps everything; encoded, as Debian's ParaView can no longer read its own raw appended data
+# VTI keeps everything; in line, as Debian's ParaView can no longer read its own appended data
 path = str(OUTPUT / "compressed.vti")
-simple.SaveData(path, compressed, EncodeAppendedData=1)
+simple.SaveData(path, compressed, DataMode="Binary")
 vti = simple.OpenDataFile(path)
 show_isosurface(vti, view, **look_at)
 check_same(direct, screenshot(view, "files_vti.png"))
