@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # gui.sh BUILD OUTPUT [DISPLAY]: starts ParaView's own window on a virtual display with the plugin of BUILD, lets
 # gui_script.py show an isosurface there, and saves OUTPUT/gui_window.png, the whole window as a user sees it.
-# What gui_script.py says is in OUTPUT/gui.log. Wants Debian's python3-pil (ParaView's Python packages bring it along).
+# What gui_script.py reports is in OUTPUT/gui.json, what ParaView says in OUTPUT/gui.log. Wants Debian's python3-pil (ParaView's Python packages bring it along).
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 build=$(realpath "$1")
@@ -33,16 +33,16 @@ for _ in $(seq 50); do
   sleep 0.1
 done
 
-rm -f "$output/gui.log" "$output/gui_window.png"
+rm -f "$output/gui.log" "$output/gui.json" "$output/gui_window.png"
 export PROGISO_GUI_BUILD=$build PROGISO_GUI_OUTPUT=$output
 paraview --script="$here/gui_script.py" >"$output/gui.log" 2>&1 &
 window=$!
 for _ in $(seq "$patience"); do
   sleep 1
-  grep -q '"refined": true' "$output/gui.log" && break
+  [ -e "$output/gui.json" ] && break
   kill -0 "$window" 2>/dev/null || break
 done
-if ! grep -q '"refined": true' "$output/gui.log"; then
+if [ ! -e "$output/gui.json" ]; then
   echo "ParaView's window showed no complete image; see $output/gui.log:" >&2
   tail -20 "$output/gui.log" >&2
   exit 1
@@ -54,4 +54,4 @@ from PIL import ImageGrab
 
 ImageGrab.grab(xdisplay=sys.argv[1]).save(sys.argv[2])
 PYTHON
-tail -1 "$output/gui.log"
+cat "$output/gui.json"

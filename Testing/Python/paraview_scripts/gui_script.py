@@ -1,5 +1,5 @@
 """Runs inside ParaView's own window (see gui.sh): shows a compressed volume as progressive isosurface, as a user would, and reports
-how the image refined while the window stayed responsive. Prints "refined" and one JSON object when it has converged."""
+how the image refined while the window stayed responsive. Writes gui.json when it has converged."""
 
 import json
 import os
@@ -8,6 +8,7 @@ import pathlib
 from paraview import servermanager, simple
 
 BUILD = pathlib.Path(os.environ["PROGISO_GUI_BUILD"])
+OUTPUT = pathlib.Path(os.environ["PROGISO_GUI_OUTPUT"])
 (PLUGIN,) = BUILD.glob("lib*/**/plugins/ProgIso/ProgIso.so")
 simple.LoadPlugin(str(PLUGIN), remote=False, ns=vars(simple))
 
@@ -35,7 +36,10 @@ def look_at_progress(*_):
     completed.append(helper.GetAsDouble())
     if completed[-1] == 1.0 and completed.count(1.0) == 1:
         passes = servermanager.vtkSMPropertyHelper(display.SMProxy, "NumberOfPasses").GetAsInt()
-        print(json.dumps({"refined": True, "completed": completed, "passes": passes}), flush=True)
+        # to a file: ParaView keeps what is printed in its own buffers for as long as it likes
+        report = json.dumps({"refined": True, "completed": completed, "passes": passes})
+        OUTPUT.joinpath("gui.json.new").write_text(report + "\n")
+        OUTPUT.joinpath("gui.json.new").rename(OUTPUT / "gui.json")
 
 
 # From here on the window's event loop makes the images: an interactive one, then whatever the mapper asks for.
