@@ -31,21 +31,23 @@ uint FirstDeferred(uint index)
   return NONE;
 }
 
+// A nearer hit than the one it has could only come from a block that the ray enters before it.
+bool BeforeHit(uint pixel, uint block)
+{
+  uint hit = rayHit[pixel];
+  if (hit == NO_HIT)
+  {
+    return true;
+  }
+  Ray ray = CameraRay(pixel);
+  return HitKey(ray, BlockEntry(ray, BlockCoordinates(block))) < hit;
+}
+
 bool GoesOn(uint index, uint pixel)
 {
   uint deferred = FirstDeferred(index);
-  uint hit = rayHit[pixel];
   uint next = deferred != NONE ? deferred : rayBlock[pixel];
-  bool goesOn = next != EXITED;
-  if (goesOn && hit != NO_HIT)
-  {
-    goesOn = deferred != NONE;
-    if (goesOn)
-    {
-      Ray ray = CameraRay(pixel);
-      goesOn = BlockEntry(ray, BlockCoordinates(deferred)) <= HitT(ray, hit);
-    }
-  }
+  bool goesOn = next != EXITED && BeforeHit(pixel, next);
   rayBlock[pixel] = goesOn ? next : EXITED;
   return goesOn;
 }
