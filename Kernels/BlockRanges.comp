@@ -1,34 +1,49 @@
-// Macrocell grid construction (section 3.1), once a volume: a work group decodes the blocks of a coarse
-// cell and those its dual grids reach into, and keeps the exact value range of every block's 5^3 dual
-// grid, quantised outwards to 8 + 8 bits within the range of the coarse cell.
-// In: Payload. Out: BlockRanges, CoarseRanges.
+// Macrocell grid construction (section 3.1), once a volume: a work group takes the blocks of a macrocell and those
+// that its dual grids reach into, decodes them unless the whole volume is decoded already, and keeps the exact value
+// range of every block's 5^3 dual grid, quantised outwards to 8 + 8 bits within the range of the macrocell.
+// In: Payload or CacheValues. Out: Macrocells.
 
 #include "Scene.glsl"
 #include "Buffers.glsl"
 #include "Rays.glsl"
 #include "Grid.glsl"
+#ifdef BINDING_PAYLOAD
 #include "BlockStore.glsl"
 #include "ZFPDecode.glsl"
+#endif
 
-layout(local_size_x = 32) in;
+layout(local_size_x = 32) in; // LANES
 
-#define GRID 17 // samples of a coarse cell's dual grid on an axis
+#define GRID 17 // samples of a macrocell's dual grids on an axis
+#define LANES 32u
 
 shared float samples[GRID * GRID * GRID];
 shared vec2 localRanges[64];
 
-// Decodes 5^3 blocks from the coarse cell's first one on, 32 at a time, into `samples`.
+// Sample `at` of a block, from where this invocation has it.
+float SampleOf(uint block, uint at, uint lane)
+{
+#ifdef BINDING_PAYLOAD
+  return uintBitsToFloat(zfpColumns[ColumnIndex(at, lane)]);
+#else
+  return uintBitsToFloat(cacheValues[64u * block + at]);
+#endif
+}
+
+// Loads the samples of 5^3 blocks from the macrocell's first one on, a block a lane.
 void LoadSamples(ivec3 firstBlock)
 {
   uint lane = gl_LocalInvocationIndex;
-  for (uint batch = 0u; batch < 125u; batch += ZFP_LANES)
+  for (uint batch = 0u; batch < 125u; batch += LANES)
   {
     uint i = batch + lane;
     ivec3 local = ivec3(i % 5u, (i / 5u) % 5u, i / 25u);
     ivec3 block = firstBlock + local;
     if (i < 125u && all(lessThan(block, scene.Blocks.xyz)))
     {
+#ifdef BINDING_PAYLOAD
       DecodeBlock(BlockIndex(block), lane);
+#endif
       ivec3 count = min(ivec3(4), ivec3(GRID) - 4 * local);
       for (int z = 0; z < count.z; ++z)
       {
@@ -38,7 +53,7 @@ void LoadSamples(ivec3 firstBlock)
           {
             ivec3 at = 4 * local + ivec3(x, y, z);
             samples[at.x + GRID * (at.y + GRID * at.z)] =
-              uintBitsToFloat(zfpColumns[ColumnIndex(uint(x + 4 * y + 16 * z), lane)]);
+              SampleOf(BlockIndex(block), uint(x + 4 * y + 16 * z), lane);
           }
         }
       }
@@ -107,25 +122,35 @@ void StoreRanges(uint cell)
   {
     coarse = vec2(min(coarse.x, localRanges[i].x), max(coarse.y, localRanges[i].y));
   }
-  blockRanges[cell * 32u + lane] =
+  macrocells[cell].Ranges[lane] =
     Quantize(localRanges[2u * lane], coarse) | (Quantize(localRanges[2u * lane + 1u], coarse) << 16);
   if (lane == 0u)
   {
-    coarseRanges[cell] = coarse;
+    macrocells[cell].Low = coarse.x;
+    macrocells[cell].High = coarse.y;
   }
+}
+
+uvec2 MacrocellsOfDispatch()
+{
+#ifdef BINDING_PAYLOAD
+  return uvec2(segment[4], segment[4] + segment[5]);
+#else
+  return uvec2(0u, uint(scene.CoarseCells.w));
+#endif
 }
 
 void main()
 {
   uint lane = gl_LocalInvocationIndex;
-  uint cells = uint(scene.CoarseCells.w);
-  for (uint cell = gl_WorkGroupID.x; cell < cells; cell += gl_NumWorkGroups.x)
+  uvec2 cells = MacrocellsOfDispatch();
+  for (uint cell = cells.x + FoldedGroup(); cell < cells.y; cell += gl_NumWorkGroups.x * gl_NumWorkGroups.y)
   {
     ivec3 coarse = ivec3(cell % uint(scene.CoarseCells.x),
       (cell / uint(scene.CoarseCells.x)) % uint(scene.CoarseCells.y),
       cell / (uint(scene.CoarseCells.x) * uint(scene.CoarseCells.y)));
     LoadSamples(4 * coarse);
-    for (uint i = lane; i < 64u; i += 32u)
+    for (uint i = lane; i < 64u; i += LANES)
     {
       localRanges[i] = DualGridRange(4 * coarse, ivec3(i & 3u, (i >> 2) & 3u, i >> 4));
     }

@@ -1,18 +1,28 @@
-// The block store: the only place that knows where a block's bits live. Block i of a fixed-rate ZFP
-// stream starts at bit i * blockbits, which may exceed 32 bits and need not be aligned.
+// The block store: the only place that knows where a block's bits live. Block i of a fixed-rate ZFP stream starts
+// at bit i * blockbits, which may exceed 32 bits and need not be aligned. A stream longer than one buffer can be
+// lies in several segments of whole layers of macrocells; a dispatch sees one of them.
+
+uniform uint segment[6]; // first block, number of blocks, bit of the first one, words; first macrocell, number of them
+
+bool InSegment(uint block)
+{
+  return block - segment[0] < segment[1];
+}
 
 // Word and bit of a block's first bit.
 uvec2 BlockStart(uint block)
 {
-  uint high, low;
-  umulExtended(block, scene.Payload.x, high, low);
+  uint high, low, carry;
+  umulExtended(block - segment[0], uint(scene.Samples.w), high, low);
+  low = uaddCarry(low, segment[2], carry);
+  high += carry;
   return uvec2((high << 27) | (low >> 5), low & 31u);
 }
 
 // A word of the payload; zeros beyond the end.
 uint PayloadWord(uint word)
 {
-  return word < scene.Payload.y ? payload[word] : 0u;
+  return word < segment[3] ? payload[word] : 0u;
 }
 
 // A cursor over a block's bits that holds the two words around it.

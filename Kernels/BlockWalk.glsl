@@ -1,11 +1,4 @@
-// The walk of a ray through the cells of one block (section 3.7), after Amanatides and Woo. Where the
-// cells' corner values come from is the business of the stage that includes this.
-
-// Does the surface cross the cell, i.e. are its corners on both sides? `local`: its place in the block.
-bool CellCrossed(uvec3 local);
-
-// Value - isovalue at the cell's corners, x fastest.
-void LoadCorners(uvec3 local, out float w[8]);
+// The walk of a ray through the cells of one block (section 3.7), after Amanatides and Woo.
 
 // Cell of the block in which the ray is at parameter t: every plane with a smaller or equal one is crossed.
 ivec3 CellAt(Ray ray, ivec3 block, double t)
@@ -19,6 +12,35 @@ ivec3 CellAt(Ray ray, ivec3 block, double t)
   return entry - (1 - ray.Step) / 2 + crossed * ray.Step;
 }
 
+// The cells of a block's dual grid reach into the next block where they are the last on an axis. Does the ray
+// pass through such ones, between parameters t0 and t1? Only then is the neighbour needed (section 3.4).
+ivec3 DualGridReach(Ray ray, ivec3 block, double t0, double t1)
+{
+  dvec3 last = PlanesT(ray, 4 * block + 3);
+  bvec3 forward = greaterThan(ray.Step, ivec3(0));
+  ivec3 reached = ivec3(lessThanEqual(last, dvec3(t1))) * ivec3(forward) +
+    ivec3(greaterThan(last, dvec3(t0))) * ivec3(not(forward));
+  return min(reached, scene.Blocks.xyz - 1 - block);
+}
+
+// Value - isovalue at the cell's corners, x fastest, where `slots` are those of its block.
+void LoadCorners(ivec3 cell, out float w[8])
+{
+  uvec3 local = uvec3(cell) & 3u;
+  bvec3 last = equal(local, uvec3(3u));
+  uvec3 next = (local + 1u) & 3u; // the first one of the neighbour, behind the last
+  uvec2 x = uvec2(local.x, next.x);
+  uvec2 y = uvec2(local.y, next.y) * 4u;
+  uvec2 z = uvec2(local.z, next.z) * 16u;
+  for (int i = 0; i < 8; ++i)
+  {
+    uint slot = SlotAt(bvec3((i & 1) != 0 && last.x, (i & 2) != 0 && last.y, (i & 4) != 0 && last.z));
+    uint bits = cacheValues[slot * 64u + x[i & 1] + y[i >> 1 & 1] + z[i >> 2]];
+    precise float value = (uintBitsToFloat(bits) - scene.Isovalue.x) - scene.Isovalue.y;
+    w[i] = value;
+  }
+}
+
 // Coordinates in the cell's unit cube at parameter t; exact on the faces that the ray is crossing.
 vec3 LocalCoordinates(Ray ray, ivec3 cell, double t, bvec3 onFace, bool leaving)
 {
@@ -29,10 +51,8 @@ vec3 LocalCoordinates(Ray ray, ivec3 cell, double t, bvec3 onFace, bool leaving)
 }
 
 // First hit of the ray in the cell between parameters t0 and t1; false if there is none.
-bool IntersectCell(Ray ray, ivec3 cell, double t0, double t1, dvec3 exits, out double t)
+bool IntersectCell(Ray ray, ivec3 cell, float w[8], double t0, double t1, dvec3 exits, out double t)
 {
-  float w[8];
-  LoadCorners(uvec3(cell) & 3u, w);
   bvec3 entering = equal(PlanesT(ray, EntryPlanes(ray, cell, 1)), dvec3(t0));
   bvec3 leaving = equal(exits, dvec3(t1));
   vec3 u0 = LocalCoordinates(ray, cell, t0, entering, false);
@@ -43,32 +63,35 @@ bool IntersectCell(Ray ray, ivec3 cell, double t0, double t1, dvec3 exits, out d
   return s >= 0.0;
 }
 
-// First hit of the ray in the block; false if there is none. The walk to the next crossed cell is a loop
-// of its own, so that the lanes of a group meet again for the costly part.
-bool IntersectBlock(Ray ray, ivec3 block, double t0, out double t)
+// First hit of the ray in the block between parameters t0 and end; false if there is none. The walk to the next
+// cell that the surface crosses is a loop of its own, so that the lanes of a group meet again for the costly part.
+bool IntersectBlock(Ray ray, ivec3 block, double t0, double end, out double t)
 {
-  double end = BlockExit(ray, block);
   ivec3 cell = CellAt(ray, block, t0);
   for (int tested = 0; tested < 16; ++tested) // a ray crosses at most 10 cells of 4^3
   {
-    dvec3 exits = PlanesT(ray, ExitPlanes(ray, cell, 1));
-    double t1 = min(SmallestOf(exits), end);
-    for (int passed = 0; passed < 16 && t1 < end && !CellCrossed(uvec3(cell) & 3u); ++passed)
+    float w[8];
+    dvec3 exits;
+    double t1;
+    bool crossed = false;
+    for (int passed = 0; passed < 16; ++passed)
     {
-      cell += ivec3(lessThanEqual(exits, dvec3(t1))) * ray.Step;
-      t0 = t1;
       exits = PlanesT(ray, ExitPlanes(ray, cell, 1));
       t1 = min(SmallestOf(exits), end);
+      LoadCorners(cell, w);
+      crossed = Straddle(w);
+      if (crossed || t1 >= end)
+      {
+        break;
+      }
+      cell += ivec3(lessThanEqual(exits, dvec3(t1))) * ray.Step;
+      t0 = t1;
     }
-    if (!CellCrossed(uvec3(cell) & 3u))
-    {
-      return false;
-    }
-    if (IntersectCell(ray, cell, t0, t1, exits, t))
+    if (crossed && IntersectCell(ray, cell, w, t0, t1, exits, t))
     {
       return true;
     }
-    if (t1 >= end)
+    if (!crossed || t1 >= end)
     {
       return false;
     }
@@ -76,15 +99,4 @@ bool IntersectBlock(Ray ray, ivec3 block, double t0, out double t)
     t0 = t1;
   }
   return false;
-}
-
-void TraceRay(uint pixel, ivec3 block)
-{
-  Ray ray = CameraRay(pixel);
-  double entry = BlockEntry(ray, block);
-  double t;
-  if (rayHit[pixel] >= HitKey(ray, entry) && IntersectBlock(ray, block, entry, t))
-  {
-    atomicMin(rayHit[pixel], HitKey(ray, t));
-  }
 }

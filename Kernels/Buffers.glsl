@@ -1,5 +1,6 @@
-// Every storage buffer of the pipeline, as the GPU sees it. Who writes and who reads each of them,
-// and its size, stands in Buffers.h; a stage gets BINDING_* only for the buffers it is given there.
+// Every storage buffer of the pipeline, as the GPU sees it. Who writes and who reads each of them, and its
+// size, stands in PipelineBuffers.cxx. A stage gets BINDING_* only for the buffers it is given, and every
+// stage gets HAS_* for the buffers that the scene needs: what belongs to another is not compiled.
 
 #ifdef BINDING_CONTROL
 // A dispatch whose size the GPU decides: three group counts and a pad.
@@ -9,33 +10,43 @@ struct Dispatch
 };
 layout(std430, binding = BINDING_CONTROL) buffer Control
 {
-  uint LiveRays;     // rays that take part in this pass
-  uint NextLiveRays; // rays that go on to the next one
-  uint Speculation;  // ray-block pairs a ray may ask for in this pass (N_spec, section 4)
-  uint PassSerial;   // counts passes over the cache's whole life: the clock of the LRU
-  uint PassIndex;    // passes of this image
-  uint Pairs;        // ray-block pairs to be intersected in this pass
-  uint VisibleBlocks;
-  uint ActiveBlocks;  // visible blocks and those their dual grids reach into
-  uint DecodedBlocks; // blocks that were not in the cache
-  uint WorkItems;
-  uint ReservedSlots; // bound on the slots this pass takes
-  uint DeferredBlocks; // visible blocks for which the cache had no room: the next pass retries
-  uint FreeHead;      // ring of free slots: first one, and how many
+  // the rays of this pass: those carried over in a list, then fresh ones in tile order
+  uint Rays;
+  uint Carried;
+  uint NextCarried; // rays that go on to the next pass
+  uint List;        // which of the two lists they stand in, 0 or 1
+  uint Fresh;       // first pixel, in tile order, whose ray has not begun
+  uint Frontier;    // rays of pixels from here on, in tile order, wait: the cache has no room for them
+  uint Window;      // pixels from the first live one to the frontier
+  uint FirstLive;   // least tile order of a live ray
+  uint Speculation; // blocks that a ray may ask for in this pass (N_spec, section 4)
+  uint PassSerial;  // counts passes over the cache's whole life: the clock of the LRU
+  uint ImageSerial; // first pass of this image
+  uint PassIndex;   // passes of this image
+  uint NewImage;    // set by the CPU: the next pass is the first of an image
+  // what the pass did
+  uint ActiveRays;    // rays that were cast, without those that miss the volume or wait
+  uint Pairs;         // ray-block pairs that were intersected
+  uint Requests;      // blocks asked for, each once
+  uint Refused;       // of these, blocks for which the cache had no room
+  uint VisibleBlocks; // distinct blocks that were intersected, and those and the neighbours they reach
+  uint ActiveBlocks;  // into; counted only for detailed statistics
+  uint TouchedSlots;  // cached blocks on map pages that this image used
+  // the cache: rings of free slots and of free map pages, where they begin and how many there are
+  uint FreeSlotsBegin;
   uint FreeSlots;
-  uint MapUsed;       // occupied entries of the block map
-  uint EvictSlots;    // slots still to be freed
-  uint UnshadedHits;  // hits left unshaded for want of cache
-  uint AdmittedBlocks; // visible blocks that are intersected in this pass
-  uint Evicted;        // blocks of the threshold age evicted so far
-  uint ControlPad;
-  Dispatch TraverseGroups;
-  Dispatch PairGroups;
-  Dispatch AdmitGroups;
+  uint ReturnedSlots; // taken for blocks that no map page could be found for
+  uint FreePagesBegin;
+  uint FreePages;
+  uint TakenPages;
+  uint EvictWanted;  // units to be freed: see PlanEviction in PlanPass.comp
+  uint EvictByPages; // 1: a page counts as one unit; 0: as many as it has slots
+  uint Evicted;      // units of the threshold age freed so far
+  uint ControlPad[3];
+  Dispatch CastGroups;
   Dispatch DecodeGroups;
-  Dispatch IntersectGroups;
   Dispatch EvictGroups;
-  uint Ages[256]; // histogram of the cached blocks' ages, in passes
+  uint Ages[256]; // units on pages by their ages, in passes
 }
 control;
 #endif
@@ -45,7 +56,7 @@ struct PassRecord
 {
   uint ActiveRays, Speculation, Pairs, VisibleBlocks;
   uint ActiveBlocks, DecodedBlocks, CachedBlocks, RemainingRays;
-  uint DeferredBlocks, Pad0, Pad1, Pad2;
+  uint RefusedBlocks, TouchedSlots, Pad0, Pad1;
 };
 layout(std430, binding = BINDING_PASS_STATISTICS) buffer PassStatistics { PassRecord passRecords[]; };
 #endif
@@ -54,40 +65,29 @@ layout(std430, binding = BINDING_PASS_STATISTICS) buffer PassStatistics { PassRe
 #ifdef BINDING_PAYLOAD
 layout(std430, binding = BINDING_PAYLOAD) readonly buffer PayloadBuffer { uint payload[]; };
 #endif
-#ifdef BINDING_COARSE_RANGES
-layout(std430, binding = BINDING_COARSE_RANGES) buffer CoarseRanges { vec2 coarseRanges[]; };
+#ifdef BINDING_MACROCELLS
+struct Macrocell
+{
+  float Low, High; // range of the dual grids of its blocks
+#ifdef HAS_CACHE_MAP
+  uint Page;         // of the block map, where its blocks' cache slots stand
+  uint Requested[2]; // blocks asked for in this pass, a bit each
 #endif
-#ifdef BINDING_BLOCK_RANGES
-// Two blocks a word; each 8 + 8 bits: range within that of its coarse cell.
-layout(std430, binding = BINDING_BLOCK_RANGES) buffer BlockRanges { uint blockRanges[]; };
-#endif
-
-// ---- the rays, one element a pixel
-#ifdef BINDING_RAY_BLOCK
-layout(std430, binding = BINDING_RAY_BLOCK) buffer RayBlock { uint rayBlock[]; };
-#endif
-#ifdef BINDING_RAY_HIT
-layout(std430, binding = BINDING_RAY_HIT) buffer RayHit { uint rayHit[]; };
-#endif
-#ifdef BINDING_LIVE_RAYS
-layout(std430, binding = BINDING_LIVE_RAYS) buffer LiveRays { uint liveRays[]; };
-#endif
-#ifdef BINDING_NEXT_LIVE_RAYS
-layout(std430, binding = BINDING_NEXT_LIVE_RAYS) buffer NextLiveRays { uint nextLiveRays[]; };
-#endif
-#ifdef BINDING_PIXEL_COLOR
-layout(std430, binding = BINDING_PIXEL_COLOR) buffer PixelColor { uint pixelColor[]; };
+  uint Ranges[32]; // of its 64 blocks' dual grids, two a word: steps within its own range, 8 + 8 bits each
+};
+layout(std430, binding = BINDING_MACROCELLS) buffer Macrocells { Macrocell macrocells[]; };
 #endif
 
-// ---- the ray-block pairs of one pass: the "virtual GPU" of section 4
-#ifdef BINDING_PAIR_BLOCK
-layout(std430, binding = BINDING_PAIR_BLOCK) buffer PairBlock { uint pairBlock[]; };
+// ---- the image
+#ifdef BINDING_HITS
+layout(std430, binding = BINDING_HITS) buffer Hits { uint hits[]; };
 #endif
-#ifdef BINDING_PAIR_ENTRY
-layout(std430, binding = BINDING_PAIR_ENTRY) buffer PairEntry { uint pairEntry[]; };
+#ifdef BINDING_NORMALS
+layout(std430, binding = BINDING_NORMALS) buffer Normals { uint normals[]; };
 #endif
-#ifdef BINDING_GROUPED_RAYS
-layout(std430, binding = BINDING_GROUPED_RAYS) buffer GroupedRays { uint groupedRays[]; };
+#ifdef BINDING_RAYS
+// For every pixel the block that its live ray waits for; then two lists of the live rays' pixels, in turn.
+layout(std430, binding = BINDING_RAYS) buffer Rays { uint rays[]; };
 #endif
 
 // ---- the block cache
@@ -95,35 +95,23 @@ layout(std430, binding = BINDING_GROUPED_RAYS) buffer GroupedRays { uint grouped
 layout(std430, binding = BINDING_CACHE_VALUES) buffer CacheValues { uint cacheValues[]; };
 #endif
 #ifdef BINDING_CACHE_MAP
-struct MapEntry
+struct MapPage
 {
-  uint Block;  // key; NONE: free entry
-  uint Slot;   // where the block's values are; NONE: not in the cache
-  uint Rays;   // pairs of this pass that ask for the block; 0: not visible
-  uint Offset; // where its rays stand in groupedRays; UNGROUPED: nowhere; NONE: deferred to the next pass
-  uint Needs;  // neighbours wanted beside it, a bit each (see NeighbourBit)
+  uint Cell;  // the macrocell it belongs to; NONE: free
+  uint Stamp; // last pass that used it
+  uint Used;  // slots on it
+  uint Free;  // not of this page: an element of the ring of free pages
+  uint Slots[64];
 };
-layout(std430, binding = BINDING_CACHE_MAP) coherent buffer CacheMap { MapEntry cacheMap[]; };
-#endif
-#ifdef BINDING_CACHE_SLOT_BLOCK
-layout(std430, binding = BINDING_CACHE_SLOT_BLOCK) buffer CacheSlotBlock { uint cacheSlotBlock[]; };
-#endif
-#ifdef BINDING_CACHE_SLOT_STAMP
-layout(std430, binding = BINDING_CACHE_SLOT_STAMP) buffer CacheSlotStamp { uint cacheSlotStamp[]; };
+layout(std430, binding = BINDING_CACHE_MAP) buffer CacheMap { MapPage mapPages[]; };
 #endif
 #ifdef BINDING_CACHE_FREE_SLOTS
 layout(std430, binding = BINDING_CACHE_FREE_SLOTS) buffer CacheFreeSlots { uint cacheFreeSlots[]; };
 #endif
-#ifdef BINDING_CACHE_VISIBLE
-layout(std430, binding = BINDING_CACHE_VISIBLE) buffer CacheVisible { uint cacheVisible[]; };
+#ifdef BINDING_CACHE_REQUESTS
+layout(std430, binding = BINDING_CACHE_REQUESTS) buffer CacheRequests { uint cacheRequests[]; };
 #endif
-#ifdef BINDING_CACHE_DECODE_LIST
-layout(std430, binding = BINDING_CACHE_DECODE_LIST) buffer CacheDecodeList { uint cacheDecodeList[]; };
-#endif
-#ifdef BINDING_CACHE_WORK_ITEMS
-struct WorkItem
-{
-  uint Block, FirstRay, RayCount;
-};
-layout(std430, binding = BINDING_CACHE_WORK_ITEMS) buffer CacheWorkItems { WorkItem cacheWorkItems[]; };
+#ifdef BINDING_CACHE_SEEN
+// The last passes in which a slot's block was intersected, and in which it was needed at all.
+layout(std430, binding = BINDING_CACHE_SEEN) buffer CacheSeen { uint cacheSeen[]; };
 #endif

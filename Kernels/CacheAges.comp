@@ -1,20 +1,29 @@
-// Eviction, first step: how many blocks have not been used for how many passes? And the map is emptied.
-// In: CacheSlotBlock, CacheSlotStamp. Out: Control (Ages), CacheMap.
+// Eviction, first step: how much of the cache has not been used for how many passes?
+// In: CacheMap. Out: Control (Ages).
 
 #include "Scene.glsl"
 #include "Buffers.glsl"
 
 layout(local_size_x = 256) in;
 
+shared uint groupAges[256];
+
 void main()
 {
-  uint stride = gl_NumWorkGroups.x * 256u;
-  for (uint i = gl_GlobalInvocationID.x; i < scene.Cache.y; i += stride)
+  uint lane = gl_LocalInvocationIndex;
+  groupAges[lane] = 0u;
+  barrier();
+  for (uint page = 256u * gl_WorkGroupID.x + lane; page < scene.Cache.y; page += 256u * gl_NumWorkGroups.x)
   {
-    cacheMap[i] = MapEntry(NONE, NONE, 0u, NONE, 0u);
-    if (i < scene.Cache.x && cacheSlotBlock[i] != NONE)
+    if (mapPages[page].Cell != NONE)
     {
-      atomicAdd(control.Ages[min(control.PassSerial - cacheSlotStamp[i], 255u)], 1u);
+      uint units = control.EvictByPages != 0u ? 1u : mapPages[page].Used;
+      atomicAdd(groupAges[min(control.PassSerial - 1u - mapPages[page].Stamp, 255u)], units);
     }
+  }
+  barrier();
+  if (groupAges[lane] > 0u)
+  {
+    atomicAdd(control.Ages[lane], groupAges[lane]);
   }
 }

@@ -1,8 +1,10 @@
-// Decompression of the blocks that the cache lacked (section 3.5), one invocation a block.
-// In: CacheDecodeList, CacheSlotBlock, Payload. Out: CacheValues.
+// Decompression (section 3.5), one invocation a block: of the blocks that rays have asked for, into free cache slots;
+// or, where there is no cache, of the whole volume.
+// In: CacheRequests, CacheFreeSlots, Payload. Out: CacheValues, CacheMap, Macrocells, Control.
 
 #include "Scene.glsl"
 #include "Buffers.glsl"
+#include "Grid.glsl"
 #include "BlockStore.glsl"
 #include "ZFPDecode.glsl"
 
@@ -10,25 +12,85 @@ layout(local_size_x = 32) in;
 
 shared uint groupSlots[ZFP_LANES];
 
+#ifdef HAS_CACHE_MAP
+uint NumberOfBlocks()
+{
+  return min(control.Requests, scene.Cache.x);
+}
+
+// The block's bit is cleared for the next pass; it gets the slot whose turn it is, and its place on the map.
+uint SlotFor(uint i, uint block)
+{
+  ivec3 coordinates = BlockCoordinates(block);
+  uint cell = CoarseIndex(coordinates >> 2);
+  uint local = LocalIndex(coordinates);
+  atomicAnd(macrocells[cell].Requested[local >> 5], ~(1u << (local & 31u)));
+  if (i >= control.FreeSlots)
+  {
+    return NONE;
+  }
+  uint ring = 2u * scene.Cache.x;
+  uint slot = cacheFreeSlots[(control.FreeSlotsBegin + i) % ring];
+  uint page = macrocells[cell].Page;
+  if (page == NONE)
+  {
+    uint at = control.FreeSlots + atomicAdd(control.ReturnedSlots, 1u);
+    cacheFreeSlots[(control.FreeSlotsBegin + at) % ring] = slot;
+    return NONE;
+  }
+  mapPages[page].Slots[local] = slot;
+  mapPages[page].Stamp = control.PassSerial;
+  atomicAdd(mapPages[page].Used, 1u);
+  return slot;
+}
+#else
+uint NumberOfBlocks()
+{
+  return uint(scene.Blocks.w);
+}
+
+uint SlotFor(uint i, uint block)
+{
+  return block;
+}
+#endif
+
+uint BlockAt(uint i)
+{
+#ifdef HAS_CACHE_MAP
+  return cacheRequests[i];
+#else
+  return i;
+#endif
+}
+
 void main()
 {
   uint lane = gl_LocalInvocationIndex;
+  uint number = NumberOfBlocks();
   uint stride = gl_NumWorkGroups.x * ZFP_LANES;
-  for (uint first = gl_WorkGroupID.x * ZFP_LANES; first < control.DecodedBlocks; first += stride)
+  for (uint first = gl_WorkGroupID.x * ZFP_LANES; first < number; first += stride)
   {
-    uint count = min(ZFP_LANES, control.DecodedBlocks - first);
-    if (lane < count)
+    uint i = first + lane;
+    uint slot = NONE;
+    if (i < number && InSegment(BlockAt(i)))
     {
-      uint slot = cacheDecodeList[first + lane];
-      groupSlots[lane] = slot;
-      DecodeBlock(cacheSlotBlock[slot], lane);
+      slot = SlotFor(i, BlockAt(i));
     }
+    if (slot != NONE)
+    {
+      DecodeBlock(BlockAt(i), lane);
+    }
+    groupSlots[lane] = slot;
     barrier();
     // the group writes block after block, in consecutive words
-    for (uint i = lane; i < count * 64u; i += ZFP_LANES)
+    for (uint j = lane; j < ZFP_LANES * 64u; j += ZFP_LANES)
     {
-      uint column = i >> 6;
-      cacheValues[groupSlots[column] * 64u + (i & 63u)] = zfpColumns[ColumnIndex(i & 63u, column)];
+      uint column = j >> 6;
+      if (groupSlots[column] != NONE)
+      {
+        cacheValues[groupSlots[column] * 64u + (j & 63u)] = zfpColumns[ColumnIndex(j & 63u, column)];
+      }
     }
     barrier();
   }

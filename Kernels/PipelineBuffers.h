@@ -13,39 +13,30 @@ enum class Buffer
   Control,
   PassStatistics,
   Payload,
-  CoarseRanges,
-  BlockRanges,
-  RayBlock,
-  RayHit,
-  LiveRays,
-  NextLiveRays,
-  PixelColor,
-  PairBlock,
-  PairEntry,
-  GroupedRays,
+  Macrocells,
+  Hits,
+  Normals,
+  Rays,
   CacheValues,
   CacheMap,
-  CacheSlotBlock,
-  CacheSlotStamp,
   CacheFreeSlots,
-  CacheVisible,
-  CacheDecodeList,
-  CacheWorkItems,
+  CacheRequests,
+  CacheSeen,
   NumberOfBuffers
 };
 constexpr int NumberOfBuffers = static_cast<int>(Buffer::NumberOfBuffers);
 
-/// What the buffers' sizes follow from.
+/// What the buffers' sizes follow from, and what of it the scene at hand needs.
 struct PipelineExtent
 {
-  std::int64_t PayloadBytes = 0;
   std::int64_t CoarseCells = 0;
   std::int64_t Pixels = 0;
-  std::int64_t Slots = 0; ///< blocks that the cache holds
+  std::int64_t Slots = 0; ///< blocks that the cache holds, or all blocks of the volume
+  std::int64_t Pages = 0; ///< of the block map
 
-  static constexpr std::int64_t RaysPerWorkItem = 256;
-  static constexpr std::int64_t EntriesPerSlot = 2; ///< of the block map
-  std::int64_t Entries() const { return EntriesPerSlot * this->Slots; }
+  bool Cached = true;    ///< false: the whole volume is decoded, once
+  bool Lit = false;      ///< hits need normals
+  bool Detailed = false; ///< distinct blocks are counted
 };
 
 /// When a buffer's size changes, and with it its contents are void.
@@ -61,15 +52,18 @@ struct BufferInfo
 {
   Buffer Id;
   const char* Name;  ///< in the statistics
-  const char* Macro; ///< BINDING_<Macro> in Buffers.glsl
+  const char* Macro; ///< BINDING_<Macro> and HAS_<Macro> in Buffers.glsl
   Lifetime Life;
-  std::int64_t (*Bytes)(const PipelineExtent&);
+  std::int64_t (*Bytes)(const PipelineExtent&); ///< 0 where the scene does not need it
   const char* Producers;
   const char* Consumers;
 };
 
-/// The table itself, in the order of the enumeration.
+/// The table itself, in the order of the enumeration. The payload's size is the stream's.
 const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers();
+
+/// Bytes of all buffers of a lifetime.
+std::int64_t BytesOf(Lifetime lifetime, const PipelineExtent& extent);
 
 /// The host's view of `Control` and `PassRecord` in Buffers.glsl.
 struct DispatchArguments
@@ -79,13 +73,15 @@ struct DispatchArguments
 
 struct ControlBlock
 {
-  std::uint32_t LiveRays, NextLiveRays, Speculation, PassSerial;
-  std::uint32_t PassIndex, Pairs, VisibleBlocks, ActiveBlocks;
-  std::uint32_t DecodedBlocks, WorkItems, ReservedSlots, DeferredBlocks;
-  std::uint32_t FreeHead, FreeSlots, MapUsed, EvictSlots;
-  std::uint32_t UnshadedHits, AdmittedBlocks, Evicted, Pad;
-  DispatchArguments TraverseGroups, PairGroups, AdmitGroups, DecodeGroups, IntersectGroups,
-    EvictGroups;
+  std::uint32_t Rays, Carried, NextCarried, List;
+  std::uint32_t Fresh, Frontier, Window, FirstLive;
+  std::uint32_t Speculation, PassSerial, ImageSerial, PassIndex;
+  std::uint32_t NewImage, ActiveRays, Pairs, Requests;
+  std::uint32_t Refused, VisibleBlocks, ActiveBlocks, TouchedSlots;
+  std::uint32_t FreeSlotsBegin, FreeSlots, ReturnedSlots, FreePagesBegin;
+  std::uint32_t FreePages, TakenPages, EvictWanted, EvictByPages;
+  std::uint32_t Evicted, Pad[3];
+  DispatchArguments CastGroups, DecodeGroups, EvictGroups;
   std::uint32_t Ages[256];
 };
 
@@ -93,7 +89,7 @@ struct PassRecord
 {
   std::uint32_t ActiveRays, Speculation, Pairs, VisibleBlocks;
   std::uint32_t ActiveBlocks, DecodedBlocks, CachedBlocks, RemainingRays;
-  std::uint32_t DeferredBlocks, Pad[3];
+  std::uint32_t RefusedBlocks, TouchedSlots, Pad[2];
 };
 constexpr std::int64_t PassRecords = 64; ///< ring of the last passes' records
 

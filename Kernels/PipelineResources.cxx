@@ -3,6 +3,8 @@
 #include "PipelineResources.h"
 
 #include <algorithm>
+#include <chrono>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <iterator>
@@ -11,9 +13,11 @@
 
 namespace
 {
-constexpr std::int64_t MaximumGroups = 65535; // on an axis, guaranteed by OpenGL 4.3
-constexpr std::size_t LargestStaging = 1
-  << 12; // bytes that stay allocated for traffic with the CPU
+constexpr std::int64_t MaximumGroups = 65535;      // on an axis, guaranteed by OpenGL 4.3
+constexpr std::int64_t LargestRead = 1 << 18;      // bytes read at once
+constexpr std::int64_t LargestStaging = 1 << 12;   // bytes that stay allocated between reads
+constexpr std::int64_t MostSnapshots = 8;          // under way at once, with room to spare
+constexpr std::int64_t SoftwareBuffer = 1LL << 30; // llvmpipe has no limit, whatever it reports
 
 int Index(Buffer buffer)
 {
@@ -29,27 +33,23 @@ void GLAPIENTRY CountError(
   }
 }
 
-// Compiles one shader into a program; the compiler's log where that fails.
-std::string AttachShader(GLuint program, GLenum type, const std::string& source)
+std::set<std::string> OfferedExtensions()
 {
-  GLuint shader = glCreateShader(type);
-  const char* text = source.c_str();
-  glShaderSource(shader, 1, &text, nullptr);
-  glCompileShader(shader);
-  GLint compiled = 0;
-  glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
-  std::string log;
-  if (!compiled)
+  GLint count = 0;
+  glGetIntegerv(GL_NUM_EXTENSIONS, &count);
+  std::set<std::string> offered;
+  for (GLint i = 0; i < count; ++i)
   {
-    log.resize(4096);
-    GLsizei length = 0;
-    glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &length, &log[0]);
-    log.resize(length);
-    log = log.empty() ? "no log" : log;
+    offered.insert(
+      reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(i))));
   }
-  glAttachShader(program, shader);
-  glDeleteShader(shader);
-  return log;
+  return offered;
+}
+
+double Milliseconds()
+{
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return std::chrono::duration<double, std::milli>(now).count();
 }
 }
 
@@ -67,24 +67,14 @@ bool PipelineResources::Fail(const std::string& message)
 // that.
 bool PipelineResources::CheckContext()
 {
-  GLint major = 0, minor = 0, count = 0;
+  GLint major = 0, minor = 0;
   glGetIntegerv(GL_MAJOR_VERSION, &major);
   glGetIntegerv(GL_MINOR_VERSION, &minor);
   this->ByExtensions = major * 10 + minor < 43;
-  if (!this->ByExtensions)
-  {
-    return true;
-  }
-  std::set<std::string> offered;
-  glGetIntegerv(GL_NUM_EXTENSIONS, &count);
-  for (GLint i = 0; i < count; ++i)
-  {
-    offered.insert(
-      reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(i))));
-  }
+  const std::set<std::string> offered = OfferedExtensions();
   for (const std::string& extension : RequiredExtensions())
   {
-    if (!offered.count(extension))
+    if (this->ByExtensions && !offered.count(extension))
     {
       return this->Fail("needs OpenGL 4.3 (compute shaders), but this context offers " +
         std::to_string(major) + "." + std::to_string(minor) + " without " + extension +
@@ -94,7 +84,35 @@ bool PipelineResources::CheckContext()
   return true;
 }
 
-bool PipelineResources::Initialize()
+void PipelineResources::AskLimits()
+{
+  const char* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  this->Software = renderer &&
+    (std::strstr(renderer, "llvmpipe") || std::strstr(renderer, "softpipe") ||
+      std::strstr(renderer, "SWR"));
+  GLint64 largest = 0;
+  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &largest);
+  this->LargestAllowed = this->Software ? SoftwareBuffer : static_cast<std::int64_t>(largest);
+  this->LimitBuffers(0);
+  const std::set<std::string> offered = OfferedExtensions();
+  GLint kibibytes[4] = { 0, 0, 0, 0 };
+  if (offered.count("GL_NVX_gpu_memory_info"))
+  {
+    glGetIntegerv(0x9047, kibibytes); // GPU_MEMORY_INFO_DEDICATED_VIDMEM_NVX
+  }
+  else if (offered.count("GL_ATI_meminfo"))
+  {
+    glGetIntegerv(0x87FB, kibibytes); // VBO_FREE_MEMORY_ATI, the total first
+  }
+  this->DeviceMemory = static_cast<std::int64_t>(kibibytes[0]) << 10;
+}
+
+void PipelineResources::LimitBuffers(std::int64_t bytes)
+{
+  this->LargestBuffer = bytes > 0 ? std::min(bytes, this->LargestAllowed) : this->LargestAllowed;
+}
+
+bool PipelineResources::Initialize(const void* context)
 {
   if (!this->CheckContext())
   {
@@ -108,10 +126,8 @@ bool PipelineResources::Initialize()
     glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
     glDebugMessageCallback(CountError, &this->GLErrors);
   }
-  const char* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-  this->Software = renderer &&
-    (std::strstr(renderer, "llvmpipe") || std::strstr(renderer, "softpipe") ||
-      std::strstr(renderer, "SWR"));
+  this->AskLimits();
+  this->Programs = PipelinePrograms::OfContext(context, this->ByExtensions);
   glGenVertexArrays(1, &this->VertexArray);
   glGenBuffers(1, &this->Staging);
   glGenBuffers(1, &this->SceneBuffer);
@@ -127,11 +143,16 @@ void PipelineResources::Release()
   {
     this->Free(static_cast<Buffer>(i));
   }
-  for (GLuint& program : this->Programs)
+  this->FreePayload();
+  this->ForgetSnapshots();
+  glDeleteBuffers(static_cast<GLsizei>(this->SpareSnapshots.size()), this->SpareSnapshots.data());
+  this->SpareSnapshots.clear();
+  this->ForgetStages();
+  if (this->Programs && this->Programs.use_count() == 1)
   {
-    glDeleteProgram(program);
-    program = 0;
+    this->Programs->Release();
   }
+  this->Programs = nullptr;
   glDeleteBuffers(1, &this->SceneBuffer);
   glDeleteBuffers(1, &this->Staging);
   glDeleteVertexArrays(1, &this->VertexArray);
@@ -144,7 +165,6 @@ void PipelineResources::Release()
   this->StagingBytes = 0;
   this->VertexArray = 0;
   this->CountsErrors = false;
-  this->StagesRun.clear();
   this->Error.clear();
 }
 
@@ -163,78 +183,83 @@ std::string PipelineResources::GetDescription()
 //------------------------------------------------------------------------------
 // Stages
 //------------------------------------------------------------------------------
-GLuint PipelineResources::Program(Stage stage)
+bool PipelineResources::Bind(Stage stage, const PayloadSegment* segment)
 {
-  GLuint& program = this->Programs[static_cast<int>(stage)];
-  if (program)
-  {
-    return program;
-  }
-  const StageInfo& info = PipelineStages()[static_cast<int>(stage)];
-  const std::string name = info.Name;
-  program = glCreateProgram();
-  std::string log;
-  if (stage == Stage::Composite)
-  {
-    log = AttachShader(
-            program, GL_VERTEX_SHADER, AssembleShader(name + ".vert", info, this->ByExtensions)) +
-      AttachShader(
-        program, GL_FRAGMENT_SHADER, AssembleShader(name + ".frag", info, this->ByExtensions));
-  }
-  else
-  {
-    log = AttachShader(
-      program, GL_COMPUTE_SHADER, AssembleShader(name + ".comp", info, this->ByExtensions));
-  }
-  glLinkProgram(program);
-  GLint linked = 0;
-  glGetProgramiv(program, GL_LINK_STATUS, &linked);
-  if (!linked)
-  {
-    char text[2048] = {};
-    glGetProgramInfoLog(program, sizeof(text), nullptr, text);
-    this->Fail("shader " + name + " does not build on this driver: " + log + text);
-    glDeleteProgram(program);
-    program = 0; // tried again, and told again, at the next render
-  }
-  return program;
-}
-
-void PipelineResources::Bind(Stage stage)
-{
-  glUseProgram(this->Program(stage));
-  glBindBufferBase(GL_UNIFORM_BUFFER, 0, this->SceneBuffer);
-  GLuint binding = 0;
+  std::vector<Buffer> bound;
+  std::vector<GLuint> names;
   for (Buffer buffer : PipelineStages()[static_cast<int>(stage)].Buffers)
   {
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding++, this->Names[Index(buffer)]);
+    const GLuint name = buffer == Buffer::Payload
+      ? (segment ? this->SegmentNames[segment - this->Segments.data()] : 0)
+      : this->Names[Index(buffer)];
+    if (name)
+    {
+      bound.push_back(buffer);
+      names.push_back(name);
+    }
+  }
+  const GLuint program = this->Programs->Get(stage, bound, this->Extent, this->Error);
+  if (!program)
+  {
+    return false;
+  }
+  glUseProgram(program);
+  glBindBufferBase(GL_UNIFORM_BUFFER, 0, this->SceneBuffer);
+  for (std::size_t i = 0; i < names.size(); ++i)
+  {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(i), names[i]);
+  }
+  if (segment)
+  {
+    const GLuint values[] = { segment->FirstBlock, segment->Blocks, segment->FirstBit,
+      static_cast<GLuint>(segment->Bytes / 4), segment->FirstMacrocell, segment->Macrocells };
+    glUniform1uiv(glGetUniformLocation(program, "segment"), 6, values);
   }
   this->StagesRun.insert(stage);
+  return true;
 }
 
-void PipelineResources::Dispatch(Stage stage, std::int64_t groupsX, std::int64_t groupsY)
+template <typename Launch>
+void PipelineResources::Run(Stage stage, const Launch& launch)
 {
-  this->Bind(stage);
-  glDispatchCompute(
-    static_cast<GLuint>(std::min(groupsX, MaximumGroups)), static_cast<GLuint>(groupsY), 1);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  const std::vector<Buffer>& buffers = PipelineStages()[static_cast<int>(stage)].Buffers;
+  const bool reads = std::count(buffers.begin(), buffers.end(), Buffer::Payload) > 0;
+  const std::size_t times = reads && !this->Segments.empty() ? this->Segments.size() : 1;
+  this->BeginTiming(stage);
+  for (std::size_t i = 0; i < times; ++i)
+  {
+    if (this->Bind(stage, reads && !this->Segments.empty() ? &this->Segments[i] : nullptr))
+    {
+      launch();
+      glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+    }
+  }
+  this->EndTiming(stage);
+}
+
+void PipelineResources::Dispatch(Stage stage, std::int64_t groups)
+{
+  const GLuint x = static_cast<GLuint>(std::min(groups, MaximumGroups));
+  const GLuint y = static_cast<GLuint>((groups + MaximumGroups - 1) / MaximumGroups);
+  this->Run(stage, [=]() { glDispatchCompute(x, y, 1); });
 }
 
 void PipelineResources::DispatchIndirect(Stage stage, std::size_t controlOffset)
 {
-  this->Bind(stage);
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, this->Names[Index(Buffer::Control)]);
-  glDispatchComputeIndirect(static_cast<GLintptr>(controlOffset));
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  this->Run(stage, [=]() { glDispatchComputeIndirect(static_cast<GLintptr>(controlOffset)); });
 }
 
 void PipelineResources::DrawComposite()
 {
-  this->Bind(Stage::Composite);
-  glBindVertexArray(this->VertexArray);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glBindVertexArray(0);
-  for (GLuint binding = 0; binding < 8; ++binding)
+  this->Run(Stage::Composite,
+    [this]()
+    {
+      glBindVertexArray(this->VertexArray);
+      glDrawArrays(GL_TRIANGLES, 0, 3);
+      glBindVertexArray(0);
+    });
+  for (GLuint binding = 0; binding < NumberOfBuffers; ++binding)
   {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, 0);
   }
@@ -243,12 +268,67 @@ void PipelineResources::DrawComposite()
   glUseProgram(0);
 }
 
+// Software renderers have no credible timer queries, but a synchronous end.
+void PipelineResources::BeginTiming(Stage stage)
+{
+  if (!this->Extent.Detailed)
+  {
+    return;
+  }
+  if (this->Software)
+  {
+    glFinish();
+    this->TimingStart = Milliseconds();
+    return;
+  }
+  Timing timing = { stage, 0, 0 };
+  glGenQueries(1, &timing.Begin);
+  glGenQueries(1, &timing.End);
+  glQueryCounter(timing.Begin, GL_TIMESTAMP);
+  this->Timings.push_back(timing);
+}
+
+void PipelineResources::EndTiming(Stage stage)
+{
+  if (this->Extent.Detailed && this->Software)
+  {
+    glFinish();
+    this->StageMilliseconds[stage] += Milliseconds() - this->TimingStart;
+  }
+  else if (this->Extent.Detailed)
+  {
+    glQueryCounter(this->Timings.back().End, GL_TIMESTAMP);
+  }
+}
+
+std::map<Stage, double> PipelineResources::GetStageMilliseconds()
+{
+  for (const Timing& timing : this->Timings)
+  {
+    GLuint64 begin = 0, end = 0;
+    glGetQueryObjectui64v(timing.Begin, GL_QUERY_RESULT, &begin);
+    glGetQueryObjectui64v(timing.End, GL_QUERY_RESULT, &end);
+    this->StageMilliseconds[timing.Id] += (end - begin) * 1e-6;
+    glDeleteQueries(1, &timing.Begin);
+    glDeleteQueries(1, &timing.End);
+  }
+  this->Timings.clear();
+  return this->StageMilliseconds;
+}
+
 void PipelineResources::ForgetStages(const std::set<Stage>& except)
 {
   std::set<Stage> kept;
   std::set_intersection(this->StagesRun.begin(), this->StagesRun.end(), except.begin(),
     except.end(), std::inserter(kept, kept.end()));
   this->StagesRun = std::move(kept);
+  for (const Timing& timing : this->Timings)
+  {
+    glDeleteQueries(1, &timing.Begin);
+    glDeleteQueries(1, &timing.End);
+  }
+  this->Timings.clear();
+  this->StageMilliseconds.clear();
 }
 
 //------------------------------------------------------------------------------
@@ -256,37 +336,66 @@ void PipelineResources::ForgetStages(const std::set<Stage>& except)
 //------------------------------------------------------------------------------
 std::int64_t PipelineResources::GetBytes(Buffer buffer) const
 {
-  return this->Bytes[Index(buffer)];
+  std::int64_t bytes = this->Bytes[Index(buffer)];
+  for (const PayloadSegment& segment : this->Segments)
+  {
+    bytes += buffer == Buffer::Payload ? segment.Bytes : 0;
+  }
+  return bytes;
+}
+
+bool PipelineResources::MakeBuffer(GLuint& name, std::int64_t bytes, const char* what)
+{
+  if (bytes > this->LargestBuffer)
+  {
+    return this->Fail(std::to_string(bytes) + " bytes of " + what +
+      " are more than one GPU buffer can hold here (" + std::to_string(this->LargestBuffer) +
+      "): lower the image size or the volume's");
+  }
+  while (glGetError() != GL_NO_ERROR)
+  {
+  }
+  glGenBuffers(1, &name);
+  glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
+  glBufferData(
+    GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_COPY);
+  glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
+  if (glGetError() == GL_NO_ERROR)
+  {
+    return true;
+  }
+  glDeleteBuffers(1, &name);
+  name = 0;
+  return this->Fail("the GPU has no room for " + std::to_string(bytes) + " bytes of " + what +
+    ": lower the memory budget, the rate or the image size");
 }
 
 bool PipelineResources::Allocate(Buffer buffer, std::int64_t bytes)
 {
   const int i = Index(buffer);
-  if (this->Names[i] && this->Bytes[i] == bytes)
+  if (this->Bytes[i] == bytes)
   {
     return true;
   }
   this->Free(buffer);
-  while (glGetError() != GL_NO_ERROR)
+  if (bytes > 0 && !this->MakeBuffer(this->Names[i], bytes, PipelineBuffers()[i].Name))
   {
+    return false;
   }
-  glGenBuffers(1, &this->Names[i]);
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, this->Names[i]);
-  glBufferData(
-    GL_SHADER_STORAGE_BUFFER, std::max<std::int64_t>(bytes, 4), nullptr, GL_DYNAMIC_COPY);
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
-  if (glGetError() != GL_NO_ERROR)
-  {
-    this->Free(buffer);
-    return this->Fail("the GPU has no room for " + std::to_string(bytes) + " bytes of " +
-      PipelineBuffers()[i].Name + ": lower the rate, the image size or the cache limit");
-  }
-  this->Bytes[i] = std::max<std::int64_t>(bytes, 4);
+  this->Bytes[i] = bytes;
   return true;
 }
 
+// What is not wanted any more goes first, so that the sum never exceeds what it will be.
 bool PipelineResources::Allocate(Lifetime lifetime, const PipelineExtent& extent)
 {
+  for (const BufferInfo& info : PipelineBuffers())
+  {
+    if (info.Life == lifetime && info.Bytes(extent) != this->Bytes[Index(info.Id)])
+    {
+      this->Free(info.Id);
+    }
+  }
   for (const BufferInfo& info : PipelineBuffers())
   {
     if (info.Life == lifetime && !this->Allocate(info.Id, info.Bytes(extent)))
@@ -295,6 +404,25 @@ bool PipelineResources::Allocate(Lifetime lifetime, const PipelineExtent& extent
     }
   }
   return true;
+}
+
+bool PipelineResources::Has(Lifetime lifetime, const PipelineExtent& extent) const
+{
+  const auto& buffers = PipelineBuffers();
+  return std::all_of(buffers.begin(), buffers.end(),
+    [&](const BufferInfo& info)
+    { return info.Life != lifetime || info.Bytes(extent) == this->Bytes[Index(info.Id)]; });
+}
+
+void PipelineResources::Free(Lifetime lifetime)
+{
+  for (const BufferInfo& info : PipelineBuffers())
+  {
+    if (info.Life == lifetime)
+    {
+      this->Free(info.Id);
+    }
+  }
 }
 
 void PipelineResources::Free(Buffer buffer)
@@ -307,54 +435,76 @@ void PipelineResources::Free(Buffer buffer)
 
 void PipelineResources::Fill(Buffer buffer, std::uint32_t value)
 {
+  if (!this->Names[Index(buffer)])
+  {
+    return;
+  }
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, this->Names[Index(buffer)]);
   glClearBufferData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
 }
 
-void PipelineResources::Swap(Buffer a, Buffer b)
+// The stages only read it, and it may be too large for a second copy.
+bool PipelineResources::UploadPayload(
+  const unsigned char* stream, const std::vector<PayloadSegment>& segments)
 {
-  std::swap(this->Names[Index(a)], this->Names[Index(b)]);
-  std::swap(this->Bytes[Index(a)], this->Bytes[Index(b)]);
-}
-
-GLuint PipelineResources::Detach(Buffer buffer)
-{
-  this->Bytes[Index(buffer)] = 0;
-  return std::exchange(this->Names[Index(buffer)], 0);
-}
-
-void PipelineResources::CopyAndDelete(GLuint old, Buffer buffer, std::int64_t bytes)
-{
-  if (old && bytes > 0)
+  this->FreePayload();
+  for (const PayloadSegment& segment : segments)
   {
-    glBindBuffer(GL_COPY_READ_BUFFER, old);
-    glBindBuffer(GL_COPY_WRITE_BUFFER, this->Names[Index(buffer)]);
-    glCopyBufferSubData(
-      GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, static_cast<GLsizeiptr>(bytes));
-    glBindBuffer(GL_COPY_READ_BUFFER, 0);
-    glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
+    GLuint name = 0;
+    if (!this->MakeBuffer(name, segment.Bytes, "the compressed volume"))
+    {
+      return false;
+    }
+    this->SegmentNames.push_back(name);
+    this->Segments.push_back(segment);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
+    glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(segment.Bytes),
+      stream + segment.FirstByte);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
   }
-  glDeleteBuffers(1, &old);
+  return true;
 }
 
-// The CPU never touches a buffer of the stages itself but a copy: drivers move what it touches to
-// the host's memory, where the stages' atomics are slow or, on some, go astray.
-void PipelineResources::Read(Buffer buffer, void* data, std::size_t bytes)
+void PipelineResources::FreePayload()
+{
+  glDeleteBuffers(static_cast<GLsizei>(this->SegmentNames.size()), this->SegmentNames.data());
+  this->SegmentNames.clear();
+  this->Segments.clear();
+}
+
+//------------------------------------------------------------------------------
+// Traffic with the CPU. It never touches a buffer of the stages itself but a copy: drivers move
+// what it touches to the host's memory, where the stages' atomics are slow or, on some, go astray.
+//------------------------------------------------------------------------------
+std::int64_t PipelineResources::GetStagingLimit()
+{
+  return LargestRead + MostSnapshots * static_cast<std::int64_t>(sizeof(Snapshot));
+}
+
+std::int64_t PipelineResources::GetStagingBytes() const
+{
+  const std::size_t snapshots = this->Ordered.size() + this->SpareSnapshots.size();
+  return this->StagingBytes + static_cast<std::int64_t>(snapshots * sizeof(Snapshot));
+}
+
+void PipelineResources::Read(Buffer buffer, std::int64_t offset, void* data, std::int64_t bytes)
 {
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glBindBuffer(GL_COPY_READ_BUFFER, this->Names[Index(buffer)]);
   glBindBuffer(GL_COPY_WRITE_BUFFER, this->Staging);
-  glBufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(bytes), nullptr, GL_STREAM_READ);
-  this->StagingBytes = static_cast<std::int64_t>(bytes);
-  glCopyBufferSubData(
-    GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, static_cast<GLsizeiptr>(bytes));
-  glGetBufferSubData(GL_COPY_WRITE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
-  if (bytes > LargestStaging) // a whole image: nothing to keep room for
+  for (std::int64_t done = 0; done < bytes; done += LargestRead)
   {
-    glBufferData(GL_COPY_WRITE_BUFFER, 4, nullptr, GL_STREAM_READ);
-    this->StagingBytes = 4;
+    const GLsizeiptr part = static_cast<GLsizeiptr>(std::min(LargestRead, bytes - done));
+    glBufferData(GL_COPY_WRITE_BUFFER, part, nullptr, GL_STREAM_READ);
+    glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER,
+      static_cast<GLintptr>(offset + done), 0, part);
+    glGetBufferSubData(GL_COPY_WRITE_BUFFER, 0, part, static_cast<char*>(data) + done);
   }
+  this->StagingBytes = std::min(bytes, LargestStaging);
+  glBufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(this->StagingBytes), nullptr,
+    GL_STREAM_READ);
   glBindBuffer(GL_COPY_READ_BUFFER, 0);
   glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
 }
@@ -373,17 +523,70 @@ void PipelineResources::Write(
   glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
 }
 
-// For what the stages only read, and what may be too large for a second copy.
-void PipelineResources::Upload(Buffer buffer, const void* data, std::int64_t bytes)
-{
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, this->Names[Index(buffer)]);
-  glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
-}
-
 void PipelineResources::UploadScene(const SceneBlock& scene)
 {
   glBindBuffer(GL_UNIFORM_BUFFER, this->SceneBuffer);
   glBufferSubData(GL_UNIFORM_BUFFER, 0, sizeof(SceneBlock), &scene);
   glBindBuffer(GL_UNIFORM_BUFFER, 0);
+}
+
+void PipelineResources::OrderSnapshot()
+{
+  Order order = { 0, nullptr };
+  if (this->SpareSnapshots.empty())
+  {
+    glGenBuffers(1, &order.Buffer);
+    glBindBuffer(GL_COPY_WRITE_BUFFER, order.Buffer);
+    glBufferData(GL_COPY_WRITE_BUFFER, sizeof(Snapshot), nullptr, GL_STREAM_READ);
+  }
+  else
+  {
+    order.Buffer = this->SpareSnapshots.back();
+    this->SpareSnapshots.pop_back();
+    glBindBuffer(GL_COPY_WRITE_BUFFER, order.Buffer);
+  }
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  glBindBuffer(GL_COPY_READ_BUFFER, this->Names[Index(Buffer::Control)]);
+  glCopyBufferSubData(
+    GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, sizeof(Snapshot::Control));
+  glBindBuffer(GL_COPY_READ_BUFFER, this->Names[Index(Buffer::PassStatistics)]);
+  glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, offsetof(Snapshot, Records),
+    sizeof(Snapshot::Records));
+  glBindBuffer(GL_COPY_READ_BUFFER, 0);
+  glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
+  order.Fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  this->Ordered.push_back(order);
+}
+
+Snapshot PipelineResources::AwaitSnapshot()
+{
+  const Order order = this->Ordered.front();
+  this->Ordered.pop_front();
+  const GLuint64 second = 1000000000;
+  GLenum state = GL_TIMEOUT_EXPIRED;
+  while (state == GL_TIMEOUT_EXPIRED)
+  {
+    state = glClientWaitSync(order.Fence, GL_SYNC_FLUSH_COMMANDS_BIT, second);
+  }
+  glDeleteSync(order.Fence);
+  Snapshot snapshot = {};
+  if (state == GL_WAIT_FAILED)
+  {
+    this->Fail("the GPU was lost: release the graphics resources and render again");
+  }
+  glBindBuffer(GL_COPY_READ_BUFFER, order.Buffer);
+  glGetBufferSubData(GL_COPY_READ_BUFFER, 0, sizeof(snapshot), &snapshot);
+  glBindBuffer(GL_COPY_READ_BUFFER, 0);
+  this->SpareSnapshots.push_back(order.Buffer);
+  return snapshot;
+}
+
+void PipelineResources::ForgetSnapshots()
+{
+  for (const Order& order : this->Ordered)
+  {
+    glDeleteSync(order.Fence);
+    this->SpareSnapshots.push_back(order.Buffer);
+  }
+  this->Ordered.clear();
 }

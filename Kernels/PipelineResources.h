@@ -7,14 +7,37 @@
 #define PipelineResources_h
 
 #include "PipelineBuffers.h"
+#include "PipelinePrograms.h"
 #include "PipelineStages.h"
 #include "ProgIsoGL.h"
 #include "SceneBlock.h"
 
 #include <array>
 #include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
 #include <set>
 #include <string>
+#include <vector>
+
+/// A part of the payload that a buffer of its own holds: whole layers of macrocells, and the layer
+/// of blocks that the last of them reach into.
+struct PayloadSegment
+{
+  std::int64_t FirstByte = 0; ///< of the stream, a multiple of 4
+  std::int64_t Bytes = 0;
+  std::uint32_t FirstBlock = 0, Blocks = 0; ///< that are decoded from here
+  std::uint32_t FirstBit = 0;               ///< of the first block, 0 … 31
+  std::uint32_t FirstMacrocell = 0, Macrocells = 0;
+};
+
+/// What the GPU tells the CPU after a pass.
+struct Snapshot
+{
+  ControlBlock Control;
+  PassRecord Records[PassRecords];
+};
 
 class PipelineResources
 {
@@ -23,10 +46,9 @@ public:
   PipelineResources(const PipelineResources&) = delete;
   void operator=(const PipelineResources&) = delete;
 
-  static constexpr std::int64_t LargestBuffer = 2147483647; ///< bytes of one SSBO binding on NVIDIA
-
-  /// Check the context and make what is always there; false where it cannot run the stages.
-  bool Initialize();
+  /// Check the context, told by any address of its own, and make what is always there; false where
+  /// it cannot run the stages.
+  bool Initialize(const void* context);
   bool IsInitialized() const { return this->SceneBuffer != 0; }
   void Release();
 
@@ -36,61 +58,115 @@ public:
   const std::string& GetError() const { return this->Error; }
   ///@}
 
-  ///@{ Buffers. Allocate() keeps one that has the size already, else its contents are undefined.
-  bool Allocate(Buffer buffer, std::int64_t bytes);
+  ///@{ Buffers. Allocate() makes those of a lifetime as an extent wants them, and frees those it
+  /// does not want. One that has the size already is kept, else its contents are undefined.
   bool Allocate(Lifetime lifetime, const PipelineExtent& extent);
-  void Free(Buffer buffer);
+  bool Has(Lifetime lifetime, const PipelineExtent& extent) const;
+  void Free(Lifetime lifetime);
   void Fill(Buffer buffer, std::uint32_t value);
-  void Swap(Buffer a, Buffer b);
   std::int64_t GetBytes(Buffer buffer) const;
-  std::int64_t GetStagingBytes() const { return this->StagingBytes; }
+  /// Bytes that traffic with the CPU takes now.
+  std::int64_t GetStagingBytes() const;
   ///@}
 
-  ///@{ Take a buffer's GL object away; put its first bytes into the one made since, and delete it.
-  GLuint Detach(Buffer buffer);
-  void CopyAndDelete(GLuint old, Buffer buffer, std::int64_t bytes);
+  ///@{ The compressed stream, in as many buffers as it takes.
+  bool UploadPayload(const unsigned char* stream, const std::vector<PayloadSegment>& segments);
+  void FreePayload();
+  const std::vector<PayloadSegment>& GetSegments() const { return this->Segments; }
   ///@}
 
   ///@{ Traffic with the CPU. It waits for the GPU only where it reads.
-  void Read(Buffer buffer, void* data, std::size_t bytes);
+  void Read(Buffer buffer, std::int64_t offset, void* data, std::int64_t bytes);
   void Write(Buffer buffer, std::size_t offset, const void* data, std::size_t bytes);
-  void Upload(Buffer buffer, const void* data, std::int64_t bytes);
   void UploadScene(const SceneBlock& scene);
   ///@}
 
-  ///@{ Run a stage on so many work groups, or on as many as the control block says at an offset.
-  void Dispatch(Stage stage, std::int64_t groupsX, std::int64_t groupsY = 1);
+  ///@{ Snapshots are ordered now and arrive in that order, without anyone waiting in between.
+  void OrderSnapshot();
+  int GetOrderedSnapshots() const { return static_cast<int>(this->Ordered.size()); }
+  Snapshot AwaitSnapshot();
+  void ForgetSnapshots();
+  ///@}
+
+  ///@{ Run a stage on so many work groups, or on as many as the control block says at an offset; a
+  /// stage that reads the payload once for each of its segments.
+  void Dispatch(Stage stage, std::int64_t groups);
   void DispatchIndirect(Stage stage, std::size_t controlOffset);
   ///@}
   /// Draw the viewport with the composite stage, and leave no binding behind.
   void DrawComposite();
 
-  ///@{ Stages that have run since they were forgotten.
+  /// What the scene needs; it chooses the variants of the stages.
+  void SetExtent(const PipelineExtent& extent) { this->Extent = extent; }
+
+  ///@{ Stages that have run since they were forgotten, and with detailed statistics their
+  /// milliseconds.
   const std::set<Stage>& GetStagesRun() const { return this->StagesRun; }
   void ForgetStages(const std::set<Stage>& except = {});
+  std::map<Stage, double> GetStageMilliseconds();
   ///@}
 
   bool IsSoftware() const { return this->Software; }
+  ///@{ Bytes that one storage buffer may have: what OpenGL allows here, or less (0: no less).
+  void LimitBuffers(std::int64_t bytes);
+  std::int64_t GetLargestBuffer() const { return this->LargestBuffer; }
+  ///@}
+  /// Bytes of graphics memory that this GPU reports; 0 where it does not tell.
+  std::int64_t GetDeviceMemory() const { return this->DeviceMemory; }
   int GetNumberOfGLErrors() const { return this->GLErrors; }
   static std::string GetDescription();
 
+  /// Bytes that Read(), Write() and snapshots take at most.
+  static std::int64_t GetStagingLimit();
+
 private:
+  struct Order
+  {
+    GLuint Buffer;
+    GLsync Fence;
+  };
+  struct Timing
+  {
+    Stage Id;
+    GLuint Begin, End;
+  };
+
   bool CheckContext();
-  GLuint Program(Stage stage);
-  void Bind(Stage stage);
+  void AskLimits();
+  bool Allocate(Buffer buffer, std::int64_t bytes);
+  bool MakeBuffer(GLuint& name, std::int64_t bytes, const char* what);
+  void Free(Buffer buffer);
+  bool Bind(Stage stage, const PayloadSegment* segment);
+  template <typename Launch>
+  void Run(Stage stage, const Launch& launch);
+  void BeginTiming(Stage stage);
+  void EndTiming(Stage stage);
 
   std::array<GLuint, NumberOfBuffers> Names = {};
   std::array<std::int64_t, NumberOfBuffers> Bytes = {};
-  std::array<GLuint, NumberOfStages> Programs = {};
+  std::vector<GLuint> SegmentNames;
+  std::vector<PayloadSegment> Segments;
+  std::shared_ptr<PipelinePrograms> Programs;
+  PipelineExtent Extent;
+
   GLuint SceneBuffer = 0;
   GLuint Staging = 0; ///< what the CPU reads and writes passes through it
   std::int64_t StagingBytes = 0;
+  std::deque<Order> Ordered; ///< snapshots under way, oldest first
+  std::vector<GLuint> SpareSnapshots;
   GLuint VertexArray = 0;
+
   bool Software = false;     ///< no GPU: Mesa's llvmpipe
   bool ByExtensions = false; ///< the context is older than 4.3 but offers what we need
+  std::int64_t LargestAllowed = 0;
+  std::int64_t LargestBuffer = 0;
+  std::int64_t DeviceMemory = 0;
   bool CountsErrors = false;
   int GLErrors = 0;
   std::set<Stage> StagesRun;
+  std::vector<Timing> Timings; ///< not yet added up
+  std::map<Stage, double> StageMilliseconds;
+  double TimingStart = 0.0; ///< software renderers: wall clock
   std::string Error;
 };
 

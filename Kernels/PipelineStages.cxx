@@ -10,24 +10,14 @@ const std::vector<StageInfo>& PipelineStages()
   using B = Buffer;
   // clang-format off
   static const std::vector<StageInfo> stages = {
-    { Stage::BlockRanges,     "BlockRanges",     { B::Payload, B::CoarseRanges, B::BlockRanges } },
-    { Stage::InitialRays,     "InitialRays",     { B::Control, B::RayBlock, B::RayHit, B::PixelColor, B::NextLiveRays } },
-    { Stage::BeginPass,       "BeginPass",       { B::Control, B::PassStatistics } },
-    { Stage::CacheAges,       "CacheAges",       { B::Control, B::CacheMap, B::CacheSlotBlock, B::CacheSlotStamp } },
-    { Stage::CacheEvict,      "CacheEvict",      { B::Control, B::CacheSlotBlock, B::CacheSlotStamp } },
-    { Stage::CacheRebuild,    "CacheRebuild",    { B::Control, B::CacheMap, B::CacheSlotBlock, B::CacheFreeSlots } },
-    { Stage::TraverseGrid,    "TraverseGrid",    { B::Control, B::LiveRays, B::RayBlock, B::RayHit, B::CoarseRanges, B::BlockRanges, B::PairBlock } },
-    { Stage::MarkBlocks,      "MarkBlocks",      { B::Control, B::PairBlock, B::PairEntry, B::CacheMap, B::CacheVisible } },
-    { Stage::AdmitBlocks,     "AdmitBlocks",     { B::Control, B::CacheMap, B::CacheVisible, B::CacheSlotBlock, B::CacheSlotStamp, B::CacheFreeSlots, B::CacheDecodeList, B::CacheWorkItems } },
-    { Stage::DecodeBlocks,    "DecodeBlocks",    { B::Control, B::Payload, B::CacheDecodeList, B::CacheSlotBlock, B::CacheValues } },
-    { Stage::GroupRays,       "GroupRays",       { B::Control, B::LiveRays, B::PairEntry, B::CacheMap, B::GroupedRays } },
-    { Stage::IntersectBlocks, "IntersectBlocks", { B::Control, B::CacheWorkItems, B::GroupedRays, B::CacheMap, B::CacheValues, B::RayHit } },
-    { Stage::IntersectPairs,  "IntersectPairs",  { B::Control, B::LiveRays, B::PairBlock, B::PairEntry, B::CacheMap, B::CacheValues, B::RayHit } },
-    { Stage::NearestHit,      "NearestHit",      { B::Control, B::LiveRays, B::RayHit, B::PairBlock, B::PairEntry, B::RayBlock, B::NextLiveRays } },
-    { Stage::BeginShading,    "BeginShading",    { B::Control, B::PassStatistics } },
-    { Stage::MarkShading,     "MarkShading",     { B::Control, B::RayHit, B::RayBlock, B::PixelColor, B::PairEntry, B::CacheMap, B::CacheVisible } },
-    { Stage::ShadeHits,       "ShadeHits",       { B::Control, B::RayHit, B::RayBlock, B::PairEntry, B::CacheMap, B::CacheValues, B::PixelColor } },
-    { Stage::Composite,       "Composite",       { B::RayHit, B::PixelColor } },
+    { Stage::BlockRanges,  "BlockRanges",  { B::Macrocells, B::Payload, B::CacheValues } },
+    { Stage::PlanPass,     "PlanPass",     { B::Control, B::PassStatistics } },
+    { Stage::CacheReset,   "CacheReset",   { B::Control, B::Macrocells, B::CacheMap, B::CacheFreeSlots } },
+    { Stage::CacheAges,    "CacheAges",    { B::Control, B::CacheMap } },
+    { Stage::CacheEvict,   "CacheEvict",   { B::Control, B::Macrocells, B::CacheMap, B::CacheFreeSlots } },
+    { Stage::CastRays,     "CastRays",     { B::Control, B::Macrocells, B::CacheMap, B::CacheValues, B::CacheRequests, B::Hits, B::Normals, B::Rays, B::CacheSeen } },
+    { Stage::DecodeBlocks, "DecodeBlocks", { B::Control, B::Payload, B::Macrocells, B::CacheMap, B::CacheFreeSlots, B::CacheRequests, B::CacheValues } },
+    { Stage::Composite,    "Composite",    { B::Hits, B::Normals } },
   };
   // clang-format on
   return stages;
@@ -69,11 +59,13 @@ const std::vector<std::string>& RequiredExtensions()
   return names;
 }
 
-std::string AssembleShader(const std::string& file, const StageInfo& stage, bool byExtensions)
+std::string AssembleShader(const std::string& file, const std::vector<Buffer>& bound,
+  const PipelineExtent& extent, bool byExtensions)
 {
+  const bool compute = file.find(".comp") != std::string::npos;
   // some bring functions only, and only a compute shader may name its own
   std::set<std::string> unnamed = { "GL_ARB_clear_buffer_object", "GL_ARB_timer_query" };
-  if (stage.Id == Stage::Composite)
+  if (!compute)
   {
     unnamed.insert("GL_ARB_compute_shader");
   }
@@ -86,11 +78,21 @@ std::string AssembleShader(const std::string& file, const StageInfo& stage, bool
       out << "#extension " << extension << " : require\n";
     }
   }
+  out << (compute ? "#define COMPUTE\n" : "");
   int binding = 0;
-  for (Buffer buffer : stage.Buffers)
+  for (Buffer buffer : bound)
   {
     out << "#define BINDING_" << PipelineBuffers()[static_cast<int>(buffer)].Macro << " "
         << binding++ << "\n";
+  }
+  PipelineExtent one = extent; // what the scene needs, whatever its size
+  one.CoarseCells = one.Pixels = one.Slots = one.Pages = 1;
+  for (const BufferInfo& info : PipelineBuffers())
+  {
+    if (info.Bytes(one) > 0)
+    {
+      out << "#define HAS_" << info.Macro << "\n";
+    }
   }
   std::set<std::string> pasted;
   Paste(file, pasted, out);

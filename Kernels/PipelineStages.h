@@ -13,22 +13,12 @@
 enum class Stage
 {
   BlockRanges,
-  InitialRays,
-  BeginPass,
+  PlanPass,
+  CacheReset,
   CacheAges,
   CacheEvict,
-  CacheRebuild,
-  TraverseGrid,
-  MarkBlocks,
-  AdmitBlocks,
+  CastRays,
   DecodeBlocks,
-  GroupRays,
-  IntersectBlocks,
-  IntersectPairs,
-  NearestHit,
-  BeginShading,
-  MarkShading,
-  ShadeHits,
   Composite,
   NumberOfStages
 };
@@ -38,7 +28,8 @@ struct StageInfo
 {
   Stage Id;
   const char* Name;            ///< also the name of its GLSL file
-  std::vector<Buffer> Buffers; ///< at bindings 0, 1, …; at most 8, OpenGL 4.3's guarantee
+  std::vector<Buffer> Buffers; ///< in the order of their bindings; at most 8 (OpenGL 4.3's
+                               ///< guarantee) but for those of detailed statistics
 };
 
 /// The table itself, in the order of the enumeration.
@@ -50,8 +41,10 @@ const std::map<std::string, const char*>& ShaderSources();
 /// What an OpenGL context older than 4.3 must offer instead, by name.
 const std::vector<std::string>& RequiredExtensions();
 
-/// Complete source of a file for a stage: version (4.30, or 1.50 with the required extensions),
-/// buffer bindings, and the file with its includes.
-std::string AssembleShader(const std::string& file, const StageInfo& stage, bool byExtensions);
+/// Complete source of a GLSL file: version (4.30, or 1.50 with the required extensions), the
+/// bindings of those buffers of its stage that are `bound`, which buffers the scene has at all, and
+/// the file with its includes.
+std::string AssembleShader(const std::string& file, const std::vector<Buffer>& bound,
+  const PipelineExtent& extent, bool byExtensions);
 
 #endif

@@ -4,37 +4,44 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 
 namespace
 {
-constexpr std::int64_t MinimumSlots = 128; // a quarter of it admits any block's neighbourhood
-constexpr std::int64_t AutomaticCacheBytes = 1LL << 30; // upper bound where the user sets none
-constexpr int FewestGroupedRays = 8; // below, a GPU's work group has too little to do
-constexpr int PassesPerBatch = 4;    // submitted before the CPU asks how many rays are left
-constexpr int PatienceWithNone = 16; // passes or shading rounds that get nowhere before we give up
+constexpr std::int64_t AutomaticValues = 1LL << 30; // bytes of decoded blocks where no budget is set
+constexpr std::int64_t LeastSlots = 2048; // any 64 rays find room for all that they need at once
+constexpr std::int64_t LeastPages = 512;  // of the block map, likewise
+constexpr std::int64_t SlotsPerPage = 8;  // else
+constexpr std::int64_t FirstSlots = 16384;
+constexpr int PassesAhead = 3;       // submitted before the CPU knows whether they are needed
+constexpr int PatienceWithNone = 64; // passes that get nowhere before we give up
+constexpr std::size_t RecentImages = 8;
 
 std::int64_t DivideUp(std::int64_t a, std::int64_t b)
 {
   return (a + b - 1) / b;
 }
+
+std::string Bytes(std::int64_t bytes)
+{
+  return std::to_string(bytes) + " bytes";
+}
 }
 
-bool ProgressivePipeline::Initialize()
+bool ProgressivePipeline::Initialize(const void* context)
 {
   this->Gpu.ClearError();
   if (this->Gpu.IsInitialized())
   {
     return true;
   }
-  if (!this->Gpu.Initialize() || !this->Gpu.Allocate(Lifetime::Pipeline, this->Extent))
+  if (!this->Gpu.Initialize(context) || !this->Gpu.Allocate(Lifetime::Pipeline, this->Extent))
   {
     return false;
   }
   ControlBlock control = {};
-  control.PassSerial = 1;
   for (DispatchArguments* groups :
-    { &control.TraverseGroups, &control.PairGroups, &control.AdmitGroups, &control.DecodeGroups,
-      &control.IntersectGroups, &control.EvictGroups })
+    { &control.CastGroups, &control.DecodeGroups, &control.EvictGroups })
   {
     *groups = { 0, 1, 1, 0 };
   }
@@ -48,34 +55,99 @@ void ProgressivePipeline::Release()
   this->TimeQueries.clear();
   this->Gpu.Release();
   this->Extent = PipelineExtent();
+  this->VolumeLoaded = false;
   this->Started = false;
 }
 
-ControlBlock ProgressivePipeline::ReadControl()
-{
-  ControlBlock control;
-  this->Gpu.Read(Buffer::Control, &control, sizeof(control));
-  return control;
-}
-
-void ProgressivePipeline::WriteControl(std::size_t offset, std::uint32_t value)
-{
-  this->Gpu.Write(Buffer::Control, offset, &value, sizeof(value));
-}
-
 //------------------------------------------------------------------------------
-// The volume and its cache
+// What there is room for
 //------------------------------------------------------------------------------
-bool ProgressivePipeline::SetVolume(const PipelineVolume& volume)
+// All GPU memory beside the compressed stream.
+std::int64_t ProgressivePipeline::BytesWith(const PipelineExtent& extent) const
 {
-  if (volume.StreamBytes > PipelineResources::LargestBuffer)
+  std::int64_t bytes =
+    static_cast<std::int64_t>(sizeof(SceneBlock)) + PipelineResources::GetStagingLimit();
+  for (Lifetime lifetime :
+    { Lifetime::Pipeline, Lifetime::Volume, Lifetime::Image, Lifetime::Cache })
   {
-    return this->Gpu.Fail("the compressed volume has " + std::to_string(volume.StreamBytes) +
-      " bytes, more than one GPU buffer can bind (" +
-      std::to_string(PipelineResources::LargestBuffer) + "): lower the rate");
+    bytes += BytesOf(lifetime, extent);
   }
+  return bytes;
+}
+
+PipelineExtent ProgressivePipeline::WithSlots(std::int64_t slots) const
+{
+  PipelineExtent extent = this->Extent;
+  extent.Cached = true;
+  extent.Slots = slots;
+  extent.Pages = std::min(extent.CoarseCells, std::max(LeastPages, slots / SlotsPerPage));
+  return extent;
+}
+
+PipelineExtent ProgressivePipeline::WholeVolume() const
+{
+  PipelineExtent extent = this->Extent;
+  extent.Cached = false;
+  extent.Slots = this->Scene.Blocks[3];
+  extent.Pages = 0;
+  return extent;
+}
+
+// Automatic: a quarter of what the GPU has, but not more than the decoded blocks are given by
+// default.
+std::int64_t ProgressivePipeline::ChooseBudget() const
+{
+  if (this->Settings.MemoryBudget > 0)
+  {
+    return this->Settings.MemoryBudget;
+  }
+  const std::int64_t most = this->BytesWith(this->WithSlots(0)) + AutomaticValues;
+  const std::int64_t device = this->Gpu.GetDeviceMemory();
+  return device > 0 ? std::min(most, device / 4) : most;
+}
+
+std::int64_t ProgressivePipeline::MinimumSlots() const
+{
+  return std::min<std::int64_t>(LeastSlots, this->Scene.Blocks[3]);
+}
+
+// As many as the budget has room for, one buffer can hold and the volume has blocks; 0 where the
+// budget has no room for the fewest that can work.
+std::int64_t ProgressivePipeline::MaximumSlots() const
+{
+  std::int64_t least = 0;
+  std::int64_t most =
+    std::min<std::int64_t>(this->Scene.Blocks[3], this->Gpu.GetLargestBuffer() / 256);
+  while (least < most)
+  {
+    const std::int64_t middle = DivideUp(least + most, 2);
+    if (this->BytesWith(this->WithSlots(middle)) <= this->Budget)
+    {
+      least = middle;
+    }
+    else
+    {
+      most = middle - 1;
+    }
+  }
+  return least >= this->MinimumSlots() ? least : 0;
+}
+
+bool ProgressivePipeline::FailForWantOf(std::int64_t bytes)
+{
+  return this->Gpu.Fail("the memory budget of " + Bytes(this->Budget) +
+    " is too small: this volume at this image size needs at least " + Bytes(bytes) +
+    " beside the compressed stream");
+}
+
+//------------------------------------------------------------------------------
+// The volume
+//------------------------------------------------------------------------------
+void ProgressivePipeline::SetVolume(const PipelineVolume& volume)
+{
+  this->Volume = volume;
+  this->VolumeLoaded = false;
   this->Started = false;
-  this->Gpu.ForgetStages();
   std::int64_t blocks = 1, coarseCells = 1;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -85,141 +157,241 @@ bool ProgressivePipeline::SetVolume(const PipelineVolume& volume)
     blocks *= this->Scene.Blocks[axis];
     coarseCells *= this->Scene.CoarseCells[axis];
   }
+  this->Scene.Samples[3] = volume.BlockBits;
   this->Scene.Blocks[3] = static_cast<std::int32_t>(blocks);
   this->Scene.CoarseCells[3] = static_cast<std::int32_t>(coarseCells);
-  this->Scene.Payload[0] = static_cast<std::uint32_t>(volume.BlockBits);
-  this->Scene.Payload[1] = static_cast<std::uint32_t>(volume.StreamBytes / 4);
-  this->Scene.Payload[2] = static_cast<std::uint32_t>(PipelineExtent::RaysPerWorkItem);
-  this->Extent.PayloadBytes = volume.StreamBytes;
   this->Extent.CoarseCells = coarseCells;
-  this->Extent.Slots = 0; // the next Start() makes a cache for this volume
-  if (!this->Gpu.Allocate(Lifetime::Volume, this->Extent))
+  this->TouchedSlots.clear();
+}
+
+void ProgressivePipeline::SetSettings(const PipelineSettings& settings)
+{
+  if (settings.LargestBuffer != this->Settings.LargestBuffer)
+  {
+    this->VolumeLoaded = false;
+  }
+  this->Settings = settings;
+  this->Gpu.LimitBuffers(settings.LargestBuffer);
+}
+
+// As few segments as the largest buffer allows, of whole layers of macrocells.
+bool ProgressivePipeline::SplitPayload(std::vector<PayloadSegment>& segments)
+{
+  const std::int64_t largest =
+    std::min(this->Gpu.GetLargestBuffer(), static_cast<std::int64_t>(1) << 33);
+  const std::int64_t layerBlocks =
+    static_cast<std::int64_t>(this->Scene.Blocks[0]) * this->Scene.Blocks[1];
+  const std::int64_t layerCells =
+    static_cast<std::int64_t>(this->Scene.CoarseCells[0]) * this->Scene.CoarseCells[1];
+  const std::int64_t bits = this->Volume.BlockBits;
+  // one more layer of blocks, which the last macrocells reach into, and a word for the first bits
+  const std::int64_t layers = (8 * (largest - 8) / (layerBlocks * bits) - 1) / 4;
+  if (layers < 1)
+  {
+    return this->Gpu.Fail("five layers of the compressed volume's blocks have " +
+      Bytes(DivideUp(5 * layerBlocks * bits, 8)) + ", more than one GPU buffer can hold (" +
+      Bytes(largest) + "): lower the rate");
+  }
+  for (std::int64_t first = 0; first < this->Scene.CoarseCells[2]; first += layers)
+  {
+    const std::int64_t last = std::min<std::int64_t>(first + layers, this->Scene.CoarseCells[2]);
+    const std::int64_t begin = 4 * first * layerBlocks;
+    const std::int64_t end = std::min<std::int64_t>(4 * last * layerBlocks, this->Scene.Blocks[3]);
+    const std::int64_t held = std::min<std::int64_t>(end + layerBlocks, this->Scene.Blocks[3]);
+    PayloadSegment segment;
+    segment.FirstByte = begin * bits / 32 * 4;
+    segment.Bytes =
+      std::min(DivideUp(held * bits, 32) * 4, this->Volume.StreamBytes) - segment.FirstByte;
+    segment.FirstBlock = static_cast<std::uint32_t>(begin);
+    segment.Blocks = static_cast<std::uint32_t>(end - begin);
+    segment.FirstBit = static_cast<std::uint32_t>(begin * bits % 32);
+    segment.FirstMacrocell = static_cast<std::uint32_t>(first * layerCells);
+    segment.Macrocells = static_cast<std::uint32_t>((last - first) * layerCells);
+    segments.push_back(segment);
+  }
+  return true;
+}
+
+// The stream goes to the GPU and stays there; its macrocells are made (section 3.1).
+bool ProgressivePipeline::LoadVolume()
+{
+  std::vector<PayloadSegment> segments;
+  if (!this->SplitPayload(segments) || !this->Gpu.Allocate(Lifetime::Volume, this->Extent) ||
+    !this->Gpu.UploadPayload(this->Volume.Stream, segments))
   {
     return false;
   }
-  this->Gpu.Upload(Buffer::Payload, volume.Stream, volume.StreamBytes);
-  this->Gpu.UploadScene(this->Scene);
-  this->Gpu.Dispatch(Stage::BlockRanges, coarseCells);
-  return this->GetError().empty();
+  this->Gpu.Dispatch(Stage::BlockRanges, this->Extent.CoarseCells);
+  return true;
 }
 
-void ProgressivePipeline::SetLimits(std::int64_t cacheBytes, int speculation, int grouping)
+// The stream goes to the GPU, is decoded, and goes again.
+bool ProgressivePipeline::LoadWholeVolume()
 {
-  if (cacheBytes != this->CacheLimit)
+  std::vector<PayloadSegment> segments;
+  if (!this->SplitPayload(segments) || !this->Gpu.Allocate(Lifetime::Volume, this->Extent) ||
+    !this->Gpu.Allocate(Lifetime::Cache, this->Extent) ||
+    !this->Gpu.UploadPayload(this->Volume.Stream, segments))
   {
-    this->Extent.Slots = 0;
+    return false;
   }
-  this->CacheLimit = cacheBytes;
-  this->SpeculationLimit = speculation;
-  // a software renderer has no lanes to keep busy
-  this->GroupingThreshold = grouping >= 0 ? grouping
-    : this->Gpu.IsSoftware()              ? 0
-                                          : FewestGroupedRays;
+  this->Gpu.Dispatch(Stage::DecodeBlocks, DivideUp(this->Extent.Slots, 32));
+  this->Gpu.FreePayload();
+  this->Gpu.Dispatch(Stage::BlockRanges, this->Extent.CoarseCells);
+  return true;
 }
 
-// As many slots as the limit, one buffer's size and the volume's number of blocks let make sense.
-std::int64_t ProgressivePipeline::MaximumSlots() const
-{
-  PipelineExtent one;
-  one.Slots = 1;
-  std::int64_t bytesPerSlot = 0;
-  for (const BufferInfo& info : PipelineBuffers())
-  {
-    bytesPerSlot += info.Life == Lifetime::Cache ? info.Bytes(one) : 0;
-  }
-  const std::int64_t limit = this->CacheLimit > 0 ? this->CacheLimit : AutomaticCacheBytes;
-  const std::int64_t most = std::min(limit / bytesPerSlot, PipelineResources::LargestBuffer / 256);
-  return std::max(MinimumSlots, std::min<std::int64_t>(most, this->Scene.Blocks[3]));
-}
-
-// A cache of another size that keeps the blocks it holds; with none before, an empty one.
+//------------------------------------------------------------------------------
+// The cache
+//------------------------------------------------------------------------------
+// A new cache, which holds nothing yet.
 bool ProgressivePipeline::ResizeCache(std::int64_t slots)
 {
-  const ControlBlock control = this->ReadControl();
-  const std::int64_t kept = this->Extent.Slots;
-  const std::array<Buffer, 3> contents = { Buffer::CacheValues, Buffer::CacheSlotBlock,
-    Buffer::CacheSlotStamp };
-  std::array<GLuint, 3> old;
-  std::transform(contents.begin(), contents.end(), old.begin(),
-    [this](Buffer b) { return this->Gpu.Detach(b); });
-  this->Extent.Slots = slots;
-  const bool allocated = this->Gpu.Allocate(Lifetime::Cache, this->Extent);
-  if (allocated)
+  this->Extent = this->WithSlots(slots);
+  this->Gpu.SetExtent(this->Extent);
+  if (!this->Gpu.Allocate(Lifetime::Cache, this->Extent))
   {
-    this->Gpu.Fill(Buffer::CacheMap, 0xFFFFFFFFu);
-    this->Gpu.Fill(Buffer::CacheSlotBlock, 0xFFFFFFFFu);
-  }
-  for (std::size_t i = 0; i < old.size(); ++i)
-  {
-    const std::int64_t bytes = allocated ? kept * (this->Gpu.GetBytes(contents[i]) / slots) : 0;
-    this->Gpu.CopyAndDelete(old[i], contents[i], bytes);
-  }
-  if (!allocated)
-  {
+    this->Gpu.Free(Lifetime::Cache);
     this->Extent.Slots = 0;
     return false;
   }
   this->Scene.Cache[0] = static_cast<std::uint32_t>(slots);
-  this->Scene.Cache[1] = static_cast<std::uint32_t>(this->Extent.Entries());
+  this->Scene.Cache[1] = static_cast<std::uint32_t>(this->Extent.Pages);
+  this->Scene.Cache[3] = slots == this->MaximumSlots() ? 1 : 0;
   this->Gpu.UploadScene(this->Scene);
-  // BeginPass takes the slots of the last pass off the ring: here they are off it already
-  const std::uint32_t taken = kept ? control.DecodedBlocks : 0;
-  this->WriteControl(offsetof(ControlBlock, DecodedBlocks), taken);
-  this->WriteControl(offsetof(ControlBlock, FreeHead), 0);
-  this->WriteControl(offsetof(ControlBlock, FreeSlots), taken);
-  this->WriteControl(offsetof(ControlBlock, MapUsed), 0);
-  this->Gpu.Dispatch(Stage::CacheAges, DivideUp(this->Extent.Entries(), 256)); // empties the map
-  this->Gpu.Dispatch(Stage::CacheRebuild, DivideUp(slots, 256));
+  this->Gpu.Dispatch(Stage::CacheReset,
+    std::min<std::int64_t>(4096, DivideUp(std::max(slots, this->Extent.CoarseCells), 256)));
+  this->CacheAge = this->PassesSubmitted;
+  this->TouchedSlots.clear();
   return true;
 }
 
-bool ProgressivePipeline::GrowCache()
+// Where a pass could not be served and there is room, the cache grows. It loses what it holds: rays
+// ask again for what they still need.
+void ProgressivePipeline::GrowCache(const PassRecord& pass)
 {
-  const std::int64_t slots = std::min(2 * this->Extent.Slots, this->MaximumSlots());
-  return slots <= this->Extent.Slots || this->ResizeCache(slots);
+  const std::int64_t most = this->MaximumSlots();
+  if (pass.RefusedBlocks > 0 && this->Extent.Slots < most)
+  {
+    const std::int64_t wanted =
+      std::max(2 * this->Extent.Slots, this->Extent.Slots + 2 * std::int64_t(pass.RefusedBlocks));
+    this->ResizeCache(std::min(wanted, most));
+  }
+}
+
+// A cache that the last images left mostly unused shrinks.
+std::int64_t ProgressivePipeline::SlotsForRecentImages() const
+{
+  if (this->TouchedSlots.size() < RecentImages)
+  {
+    return this->Extent.Slots;
+  }
+  const std::int64_t most =
+    *std::max_element(this->TouchedSlots.begin(), this->TouchedSlots.end());
+  const std::int64_t enough = std::max({ 2 * most, FirstSlots, this->MinimumSlots() });
+  return 4 * most < this->Extent.Slots ? std::min(enough, this->Extent.Slots)
+                                       : this->Extent.Slots;
 }
 
 //------------------------------------------------------------------------------
-// The image
+// The scene
 //------------------------------------------------------------------------------
-bool ProgressivePipeline::SetScene(const SceneBlock& scene)
+void ProgressivePipeline::FillInScene(const SceneBlock& scene)
 {
   const SceneBlock own = this->Scene;
   this->Scene = scene;
   std::copy(own.Samples, own.Samples + 4, this->Scene.Samples);
   std::copy(own.Blocks, own.Blocks + 4, this->Scene.Blocks);
   std::copy(own.CoarseCells, own.CoarseCells + 4, this->Scene.CoarseCells);
-  std::copy(own.Payload, own.Payload + 4, this->Scene.Payload);
   std::copy(own.Cache, own.Cache + 4, this->Scene.Cache);
-  this->Scene.Cache[2] = static_cast<std::uint32_t>(this->SpeculationLimit);
-  this->Scene.Payload[3] = static_cast<std::uint32_t>(this->GroupingThreshold);
-  this->Extent.Pixels = static_cast<std::int64_t>(scene.Image[0]) * scene.Image[1];
-  if (!this->Gpu.Allocate(Lifetime::Image, this->Extent))
-  {
-    return false;
-  }
-  // its size follows from both the cache and the image
-  const std::int64_t workItems =
-    PipelineBuffers()[static_cast<int>(Buffer::CacheWorkItems)].Bytes(this->Extent);
-  if (this->Extent.Slots > 0 && !this->Gpu.Allocate(Buffer::CacheWorkItems, workItems))
-  {
-    return false;
-  }
-  this->Gpu.UploadScene(this->Scene);
-  if (this->Extent.Slots == 0)
-  {
-    // holds the working sets of small volumes; it grows on demand
-    const std::int64_t wanted = std::max<std::int64_t>(16384, this->Extent.Pixels / 8);
-    return this->ResizeCache(std::min(wanted, this->MaximumSlots()));
-  }
-  return true;
+  this->Scene.Cache[2] = static_cast<std::uint32_t>(this->Settings.SpeculationLimit);
 }
 
+bool ProgressivePipeline::SetScene(const SceneBlock& scene, bool newImage)
+{
+  this->FillInScene(scene);
+  const PipelineExtent before = this->Extent;
+  this->Extent.Pixels = static_cast<std::int64_t>(scene.Image[0]) * scene.Image[1];
+  this->Extent.Lit = scene.Lighting[0] > 0;
+  this->Extent.Detailed = this->Settings.Detailed;
+  const bool sameImage = before.Pixels == this->Extent.Pixels && before.Lit == this->Extent.Lit &&
+    before.Detailed == this->Extent.Detailed;
+  this->Started = this->Started && sameImage;
+  return this->MakeRoom(newImage);
+}
+
+// Decides between the whole volume, decoded, and a cache; has each buffer made as large as the
+// budget allows and the scene needs.
+bool ProgressivePipeline::MakeRoom(bool newImage)
+{
+  this->Budget = this->ChooseBudget();
+  const PipelineExtent whole = this->WholeVolume();
+  const bool fits = this->BytesWith(whole) <= this->Budget &&
+    256 * whole.Slots <= this->Gpu.GetLargestBuffer();
+  const bool cached = !(fits && this->Settings.DecodeWholeVolume);
+  const std::int64_t most = this->MaximumSlots();
+  if (cached && most == 0)
+  {
+    const std::int64_t cache = this->BytesWith(this->WithSlots(this->MinimumSlots()));
+    return this->FailForWantOf(
+      this->Settings.DecodeWholeVolume ? std::min(cache, this->BytesWith(whole)) : cache);
+  }
+  const bool reload = !this->VolumeLoaded || cached != this->Extent.Cached;
+  std::int64_t slots = cached ? std::min(this->Extent.Slots, most) : whole.Slots;
+  if (reload)
+  {
+    this->Gpu.Free(Lifetime::Volume);
+    this->Gpu.FreePayload();
+    slots = cached ? 0 : whole.Slots;
+  }
+  // what shrinks goes before anything grows
+  if (slots != this->Extent.Slots || reload)
+  {
+    this->Gpu.Free(Lifetime::Cache);
+    this->Started = false;
+  }
+  this->Extent = cached ? this->WithSlots(slots) : whole;
+  this->Gpu.SetExtent(this->Extent);
+  this->Gpu.UploadScene(this->Scene);
+  if (reload)
+  {
+    this->Gpu.ForgetStages();
+    this->VolumeLoaded = cached ? this->LoadVolume() : this->LoadWholeVolume();
+  }
+  return this->GetError().empty() && this->Gpu.Allocate(Lifetime::Image, this->Extent) &&
+    (cached ? this->MakeCache(most, newImage)
+            : this->Gpu.Allocate(Lifetime::Cache, this->Extent));
+}
+
+// The cache begins small, and is left alone while an image is under way.
+bool ProgressivePipeline::MakeCache(std::int64_t most, bool newImage)
+{
+  std::int64_t slots = this->Extent.Slots;
+  if (slots == 0)
+  {
+    slots = std::min(std::max(FirstSlots, this->Extent.Pixels / 4), most);
+  }
+  else if (newImage)
+  {
+    slots = this->SlotsForRecentImages();
+  }
+  const bool same = this->Gpu.Has(Lifetime::Cache, this->WithSlots(slots)) &&
+    this->Scene.Cache[3] == (slots == most ? 1u : 0u);
+  return same || this->ResizeCache(slots);
+}
+
+//------------------------------------------------------------------------------
+// The image
+//------------------------------------------------------------------------------
 void ProgressivePipeline::Start()
 {
+  this->Gpu.ForgetSnapshots();
   this->Passes.clear();
   this->PassEnds.clear();
   this->PassesSubmitted = 0;
+  this->PassesKnown = 0;
+  this->CacheAge = 0;
+  this->PassesWithoutProgress = 0;
   this->Remaining = this->Extent.Pixels;
   this->Started = true;
   this->Gpu.ForgetStages({ Stage::BlockRanges }); // which ran for the volume
@@ -228,113 +400,107 @@ void ProgressivePipeline::Start()
   {
     this->MarkPassEnd(); // the first query is the image's start
   }
-  this->WriteControl(offsetof(ControlBlock, LiveRays), 0);
-  this->WriteControl(offsetof(ControlBlock, NextLiveRays), 0);
-  this->WriteControl(offsetof(ControlBlock, PassIndex), 0);
-  this->Gpu.Dispatch(
-    Stage::InitialRays, DivideUp(this->Scene.Image[0], 8), DivideUp(this->Scene.Image[1], 8));
-  this->Gpu.Swap(Buffer::LiveRays, Buffer::NextLiveRays);
+  this->Gpu.Fill(Buffer::Hits, 0xFFFFFFFFu);
+  this->Gpu.Fill(Buffer::Normals, 0x80008000u);
+  const std::uint32_t yes = 1;
+  this->Gpu.Write(Buffer::Control, offsetof(ControlBlock, NewImage), &yes, sizeof(yes));
+  this->Gpu.Dispatch(Stage::PlanPass, 1);
 }
 
 // The algorithm. Every dispatch's size is decided on the GPU; see Buffers.glsl for what flows
-// between the stages.
+// between the stages. Where the whole volume is decoded one pass casts all rays to their ends.
 void ProgressivePipeline::RunPass()
 {
-  this->Gpu.Dispatch(Stage::BeginPass, 1);
-  this->EvictBlocks();
-  this->Gpu.DispatchIndirect(Stage::TraverseGrid, offsetof(ControlBlock, TraverseGroups));
-  this->Gpu.DispatchIndirect(Stage::MarkBlocks, offsetof(ControlBlock, PairGroups));
-  this->Gpu.DispatchIndirect(Stage::AdmitBlocks, offsetof(ControlBlock, AdmitGroups));
-  this->Gpu.DispatchIndirect(Stage::DecodeBlocks, offsetof(ControlBlock, DecodeGroups));
-  this->Gpu.DispatchIndirect(Stage::GroupRays, offsetof(ControlBlock, PairGroups));
-  this->Gpu.DispatchIndirect(Stage::IntersectBlocks, offsetof(ControlBlock, IntersectGroups));
-  if (this->Scene.Payload[3] > 0)
+  if (this->Extent.Cached && this->Extent.Slots < this->Scene.Blocks[3])
   {
-    this->Gpu.DispatchIndirect(Stage::IntersectPairs, offsetof(ControlBlock, PairGroups));
+    this->Gpu.DispatchIndirect(Stage::CacheAges, offsetof(ControlBlock, EvictGroups));
+    this->Gpu.DispatchIndirect(Stage::CacheEvict, offsetof(ControlBlock, EvictGroups));
   }
-  this->Gpu.DispatchIndirect(Stage::NearestHit, offsetof(ControlBlock, TraverseGroups));
-  this->Gpu.Swap(Buffer::LiveRays, Buffer::NextLiveRays);
+  this->Gpu.DispatchIndirect(Stage::CastRays, offsetof(ControlBlock, CastGroups));
+  if (this->Extent.Cached)
+  {
+    this->Gpu.DispatchIndirect(Stage::DecodeBlocks, offsetof(ControlBlock, DecodeGroups));
+  }
+  this->Gpu.Dispatch(Stage::PlanPass, 1);
   ++this->PassesSubmitted;
   this->MarkPassEnd();
+  this->Gpu.OrderSnapshot();
 }
 
-// Zero work groups unless BeginPass or BeginShading found the cache too full; nothing at all where
-// the cache holds the whole volume.
-void ProgressivePipeline::EvictBlocks()
+// The GPU is always given work ahead of what the CPU knows; passes that turn out not to be needed
+// have no work groups.
+void ProgressivePipeline::RunPasses(
+  int maximum, bool eager, const std::function<bool()>& stop)
 {
-  if (this->Extent.Slots >= this->Scene.Blocks[3])
+  const std::int64_t ahead =
+    eager || this->Gpu.IsSoftware() || !this->Extent.Cached ? 1 : PassesAhead;
+  const std::int64_t last = maximum > 0 ? this->PassesSubmitted + maximum
+                                        : std::numeric_limits<std::int64_t>::max();
+  bool more = this->Remaining > 0;
+  while (more || this->PassesKnown < this->PassesSubmitted)
   {
-    return;
-  }
-  for (Stage stage : { Stage::CacheAges, Stage::CacheEvict, Stage::CacheRebuild })
-  {
-    this->Gpu.DispatchIndirect(stage, offsetof(ControlBlock, EvictGroups));
-  }
-}
-
-void ProgressivePipeline::RunPasses(int maximum, bool eager, const std::function<bool()>& stop)
-{
-  const int batch = eager || this->Gpu.IsSoftware() ? 1 : PassesPerBatch;
-  int left = maximum > 0 ? maximum : -1;
-  int stalled = 0;
-  while (this->Remaining > 0 && left != 0)
-  {
-    const int passes = left > 0 ? std::min(batch, left) : batch;
-    for (int i = 0; i < passes; ++i)
+    while (more && this->PassesSubmitted < this->PassesKnown + ahead &&
+      this->PassesSubmitted < last)
     {
       this->RunPass();
     }
-    left = left > 0 ? left - passes : left;
-    const ControlBlock control = this->ReadControl();
-    const bool gotOn = control.Pairs > 0 || control.NextLiveRays != this->Remaining;
-    this->Remaining = control.NextLiveRays;
-    stalled = gotOn ? 0 : stalled + 1;
-    if (stalled == PatienceWithNone)
+    if (!this->Extent.Cached)
     {
-      this->Gpu.Fail("makes no progress: the GPU may have been lost; release the graphics "
-                     "resources and render again");
+      this->Remaining = 0; // there is nothing to wait for
+      return;
     }
-    if (control.PassIndex - this->Passes.size() > PassRecords / 2)
-    {
-      this->ReadPassRecords();
-    }
-    if ((control.DeferredBlocks > 0 && !this->GrowCache()) || !this->GetError().empty() || stop())
+    this->TakeSnapshot();
+    if (this->Remaining == 0 || !this->GetError().empty())
     {
       return;
     }
+    more = more && !stop() && this->PassesSubmitted < last;
   }
 }
 
-void ProgressivePipeline::ShadeHits(bool again)
+// What the next pass of those submitted has done.
+void ProgressivePipeline::TakeSnapshot()
 {
-  if (again)
+  const Snapshot snapshot = this->Gpu.AwaitSnapshot();
+  const std::size_t total = snapshot.Control.PassIndex;
+  ++this->PassesKnown;
+  if (this->Passes.size() < total)
   {
-    this->Gpu.Fill(Buffer::PixelColor, 0);
+    TimedPass pass;
+    static_cast<PassRecord&>(pass) = snapshot.Records[(total - 1) % PassRecords];
+    const bool gotOn = pass.Pairs > 0 || pass.DecodedBlocks > 0 ||
+      pass.RemainingRays != this->Remaining;
+    this->PassesWithoutProgress = gotOn ? 0 : this->PassesWithoutProgress + 1;
+    this->Remaining = pass.RemainingRays;
+    this->Passes.push_back(pass);
+    if (this->PassesKnown > this->CacheAge)
+    {
+      this->GrowCache(pass);
+    }
   }
-  const std::int64_t groups = DivideUp(this->Extent.Pixels, 64);
-  std::uint32_t unshaded = 0;
-  int stalled = 0;
-  do
+  if (this->Remaining == 0)
   {
-    this->Gpu.Dispatch(Stage::BeginShading, 1);
-    this->EvictBlocks(); // also where nothing is looked up: BeginShading may have planned it
-    if (this->Scene.Lighting[0] > 0)
-    {
-      this->Gpu.Dispatch(Stage::MarkShading, groups);
-      this->Gpu.DispatchIndirect(Stage::AdmitBlocks, offsetof(ControlBlock, AdmitGroups));
-      this->Gpu.DispatchIndirect(Stage::DecodeBlocks, offsetof(ControlBlock, DecodeGroups));
-    }
-    this->Gpu.Dispatch(Stage::ShadeHits, groups);
-    const std::uint32_t before = unshaded;
-    unshaded = this->ReadControl().UnshadedHits;
-    stalled = unshaded == before ? stalled + 1 : 0;
-    if (unshaded > 0 && stalled == PatienceWithNone)
-    {
-      this->Gpu.Fail("cannot shade: the GPU may have been lost; release the graphics resources and "
-                     "render again");
-    }
-  } while (unshaded > 0 && this->GetError().empty() && this->GrowCache());
-  this->ReadPassRecords();
+    this->EndImage();
+  }
+  if (this->PassesWithoutProgress == PatienceWithNone)
+  {
+    this->Gpu.Fail("makes no progress: the GPU may have been lost; release the graphics "
+                   "resources and render again");
+  }
+}
+
+void ProgressivePipeline::EndImage()
+{
+  this->Gpu.ForgetSnapshots(); // of passes that were not needed
+  this->PassesKnown = this->PassesSubmitted;
+  if (!this->Passes.empty())
+  {
+    this->TouchedSlots.push_back(this->Passes.back().TouchedSlots);
+  }
+  if (this->TouchedSlots.size() > RecentImages)
+  {
+    this->TouchedSlots.erase(this->TouchedSlots.begin());
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -363,36 +529,27 @@ void ProgressivePipeline::MarkPassEnd()
   glQueryCounter(this->TimeQueries[query], GL_TIMESTAMP);
 }
 
-// Records of the passes that had rays; those submitted after the last ray was done leave none.
-void ProgressivePipeline::ReadPassRecords()
+void ProgressivePipeline::CompleteStatistics()
 {
-  const std::size_t total = this->ReadControl().PassIndex;
-  if (total == this->Passes.size())
+  while (this->PassesKnown < this->PassesSubmitted)
   {
-    return;
+    this->TakeSnapshot();
   }
-  std::array<PassRecord, PassRecords> ring;
-  this->Gpu.Read(Buffer::PassStatistics, ring.data(), sizeof(ring));
   GLuint64 start = 0;
-  if (!this->Gpu.IsSoftware())
+  if (!this->Gpu.IsSoftware() && !this->Passes.empty())
   {
     glGetQueryObjectui64v(this->TimeQueries[0], GL_QUERY_RESULT, &start);
   }
-  for (std::size_t pass = this->Passes.size(); pass < total; ++pass)
+  for (std::size_t i = 0; i < this->Passes.size(); ++i)
   {
-    TimedPass timed;
-    static_cast<PassRecord&>(timed) = ring[pass % PassRecords];
     if (this->Gpu.IsSoftware())
     {
-      timed.ElapsedMilliseconds = this->PassEnds[pass];
+      this->Passes[i].ElapsedMilliseconds = this->PassEnds[i];
+      continue;
     }
-    else
-    {
-      GLuint64 end = 0;
-      glGetQueryObjectui64v(this->TimeQueries[pass + 1], GL_QUERY_RESULT, &end);
-      timed.ElapsedMilliseconds = (end - start) * 1e-6;
-    }
-    this->Passes.push_back(timed);
+    GLuint64 end = 0;
+    glGetQueryObjectui64v(this->TimeQueries[i + 1], GL_QUERY_RESULT, &end);
+    this->Passes[i].ElapsedMilliseconds = (end - start) * 1e-6;
   }
 }
 
@@ -406,31 +563,20 @@ double ProgressivePipeline::GetCompletedFraction() const
 std::vector<std::uint32_t> ProgressivePipeline::ReadHitKeys()
 {
   std::vector<std::uint32_t> keys(static_cast<std::size_t>(this->Extent.Pixels));
-  this->Gpu.Read(Buffer::RayHit, keys.data(), 4 * keys.size());
+  this->Gpu.Read(Buffer::Hits, 0, keys.data(), 4 * this->Extent.Pixels);
   return keys;
 }
 
-bool ProgressivePipeline::DecodeBlocks(std::int64_t first, std::int64_t count, float* values)
+bool ProgressivePipeline::DecodeVolume(std::vector<float>& values)
 {
-  if (this->Extent.Slots < count && !this->ResizeCache(count))
+  this->Extent = this->WholeVolume();
+  this->Gpu.SetExtent(this->Extent);
+  this->Gpu.UploadScene(this->Scene);
+  if (!this->LoadWholeVolume())
   {
     return false;
   }
-  std::vector<std::uint32_t> slots(count), blocks(count);
-  for (std::int64_t i = 0; i < count; ++i)
-  {
-    slots[i] = static_cast<std::uint32_t>(i);
-    blocks[i] = static_cast<std::uint32_t>(first + i);
-  }
-  const std::size_t bytes = static_cast<std::size_t>(4 * count);
-  this->Gpu.Write(Buffer::CacheDecodeList, 0, slots.data(), bytes);
-  this->Gpu.Write(Buffer::CacheSlotBlock, 0, blocks.data(), bytes);
-  this->WriteControl(offsetof(ControlBlock, DecodedBlocks), static_cast<std::uint32_t>(count));
-  this->Gpu.Dispatch(Stage::DecodeBlocks, DivideUp(count, 32));
-  this->Gpu.Read(Buffer::CacheValues, values, 64 * bytes);
-  // the cache's bookkeeping knows nothing of these blocks: start afresh
-  this->WriteControl(offsetof(ControlBlock, DecodedBlocks), 0);
-  this->Extent.Slots = 0;
-  this->Started = false;
+  values.resize(static_cast<std::size_t>(64 * this->Extent.Slots));
+  this->Gpu.Read(Buffer::CacheValues, 0, values.data(), 256 * this->Extent.Slots);
   return this->GetError().empty();
 }

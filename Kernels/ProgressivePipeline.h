@@ -3,13 +3,12 @@
 // Drives the stages of progressive speculative iso-raycasting (Usher, Dyken and Kumar, LDAV 2023)
 // on the current OpenGL context. It owns the GPU's objects and knows nothing of VTK's scene: the
 // mapper (vtkProgressiveIsosurfaceMapper) translates that into a SceneBlock and calls, in this
-// order, SetVolume, SetScene, Start, RunPasses, ShadeHits, Composite.
+// order, SetVolume, SetSettings, SetScene, Start, RunPasses, Composite.
 #ifndef ProgressivePipeline_h
 #define ProgressivePipeline_h
 
 #include "PipelineResources.h"
 
-#include <array>
 #include <chrono>
 #include <functional>
 #include <string>
@@ -18,10 +17,19 @@
 /// A fixed-rate ZFP stream of 4^3 blocks and the grid it stands for.
 struct PipelineVolume
 {
-  const unsigned char* Stream = nullptr;
+  const unsigned char* Stream = nullptr; ///< stays valid: the pipeline uploads it when it has to
   std::int64_t StreamBytes = 0;
   int Samples[3] = { 0, 0, 0 };
   int BlockBits = 0;
+};
+
+struct PipelineSettings
+{
+  std::int64_t MemoryBudget = 0;  ///< bytes beside the compressed stream; 0: automatic
+  std::int64_t LargestBuffer = 0; ///< bytes of one storage buffer; 0: what OpenGL allows
+  int SpeculationLimit = 64;      ///< 1: off
+  bool DecodeWholeVolume = true;  ///< where the budget has room for it
+  bool Detailed = false;          ///< stages are timed, distinct blocks counted
 };
 
 struct TimedPass : PassRecord
@@ -37,71 +45,90 @@ public:
   ProgressivePipeline(const ProgressivePipeline&) = delete;
   void operator=(const ProgressivePipeline&) = delete;
 
-  /// Check the context; false and GetError() where it cannot run the stages (OpenGL < 4.3).
-  bool Initialize();
+  /// Check the context, told by any address of its own; false and GetError() where it cannot run
+  /// the stages (OpenGL < 4.3).
+  bool Initialize(const void* context);
   /// Delete every GL object.
   void Release();
 
-  /// Upload a volume and compute its macrocell grid. What the cache held is void.
-  bool SetVolume(const PipelineVolume& volume);
-  /// Bounds of the block cache in bytes (0: automatic), the greatest speculation count (1: off),
-  /// and the number of rays from which on a block's rays are grouped (negative: automatic).
-  void SetLimits(std::int64_t cacheBytes, int speculation, int grouping);
-  /// The image's size, camera, isovalue and look; the pipeline fills in what it knows itself.
-  bool SetScene(const SceneBlock& scene);
+  /// Take another volume.
+  void SetVolume(const PipelineVolume& volume);
+  void SetSettings(const PipelineSettings& settings);
+  /// The image's size, camera, isovalue and look; the pipeline fills in what it knows itself, and
+  /// makes ready what the scene needs: the volume's macrocells, the cache, the image's buffers.
+  /// False and GetError() where the budget or the GPU has no room. `newImage`: Start() follows.
+  bool SetScene(const SceneBlock& scene, bool newImage);
 
-  /// Begin a new image: all rays at the volume's border.
+  /// Begin a new image: no ray has begun. Needed first, and where IsStarted() tells so.
   void Start();
+  bool IsStarted() const { return this->Started; }
   /// Do passes until the image is complete, `maximum` are done (0: no limit) or `stop` says so
   /// after a pass. With `eager` no pass is submitted before the last one is known to be needed.
   void RunPasses(int maximum, bool eager, const std::function<bool()>& stop);
-  /// Shade the hits that have come in. `again`: all of them, for a new look.
-  void ShadeHits(bool again);
   /// Draw the image with its depth into the current framebuffer and viewport.
   void Composite() { this->Gpu.DrawComposite(); }
+  /// Wait for what the passes tell of themselves.
+  void CompleteStatistics();
 
   bool GetConverged() const { return this->Started && this->Remaining == 0; }
   double GetCompletedFraction() const;
+  std::int64_t GetMemoryBudget() const { return this->Budget; }
   const std::vector<TimedPass>& GetPasses() const { return this->Passes; }
-  const PipelineResources& GetResources() const { return this->Gpu; }
+  PipelineResources& GetResources() { return this->Gpu; }
   const SceneBlock& GetScene() const { return this->Scene; }
   const std::string& GetError() const { return this->Gpu.GetError(); }
 
-  /// Hit keys of all pixels, rows from the bottom (see Rays.glsl), and the parameter one stands
-  /// for.
+  /// Hit keys of all pixels, rows from the bottom (see Rays.glsl).
   std::vector<std::uint32_t> ReadHitKeys();
-  /// Decode blocks first … first + count - 1 with the pipeline's own decoder: 64 values each.
-  bool DecodeBlocks(std::int64_t first, std::int64_t count, float* values);
+  /// Decode the whole volume with the pipeline's own decoder; `values`: 64 for every block.
+  bool DecodeVolume(std::vector<float>& values);
 
 private:
   using Clock = std::chrono::steady_clock;
 
-  ControlBlock ReadControl();
-  void WriteControl(std::size_t offset, std::uint32_t value);
+  void FillInScene(const SceneBlock& scene);
+  bool MakeRoom(bool newImage);
+  bool MakeCache(std::int64_t most, bool newImage);
+  bool FailForWantOf(std::int64_t bytes);
+  std::int64_t BytesWith(const PipelineExtent& extent) const;
+  PipelineExtent WithSlots(std::int64_t slots) const;
+  PipelineExtent WholeVolume() const;
+  std::int64_t ChooseBudget() const;
+  std::int64_t MinimumSlots() const;
+  std::int64_t MaximumSlots() const;
+
+  bool SplitPayload(std::vector<PayloadSegment>& segments);
+  bool LoadVolume();
+  bool LoadWholeVolume();
+  bool ResizeCache(std::int64_t slots);
+  void GrowCache(const PassRecord& pass);
+  std::int64_t SlotsForRecentImages() const;
 
   void RunPass();
-  void EvictBlocks();
-  void ReadPassRecords();
   void MarkPassEnd();
-  std::int64_t MaximumSlots() const;
-  bool ResizeCache(std::int64_t slots);
-  bool GrowCache();
+  void TakeSnapshot();
+  void EndImage();
   double Since(Clock::time_point start) const;
 
   PipelineResources Gpu;
-  std::vector<GLuint> TimeQueries; ///< image start, then one a pass; unused on software renderers
-
-  PipelineExtent Extent;
+  PipelineVolume Volume;
+  PipelineSettings Settings;
+  PipelineExtent Extent; ///< what the GPU's buffers are made for
   SceneBlock Scene;
-  std::int64_t CacheLimit = 0;
-  int SpeculationLimit = 64;
-  int GroupingThreshold = 0;
+  std::int64_t Budget = 0;
+  bool VolumeLoaded = false;
 
   bool Started = false;
   std::int64_t Remaining = 0; ///< live rays after the last known pass
   std::int64_t PassesSubmitted = 0;
+  std::int64_t PassesKnown = 0;
+  std::int64_t CacheAge = 0; ///< the pass before which the cache was made
+  int PassesWithoutProgress = 0;
+  std::vector<std::int64_t> TouchedSlots; ///< of the last complete images, newest last
+
   Clock::time_point StartTime;
-  std::vector<double> PassEnds; ///< software renderers: milliseconds since the start
+  std::vector<GLuint> TimeQueries; ///< image start, then one a pass; unused on software renderers
+  std::vector<double> PassEnds;    ///< software renderers: milliseconds since the start
   std::vector<TimedPass> Passes;
 };
 

@@ -1,7 +1,7 @@
-// Rays and their parameters. Everything a ray meets is ordered by the parameters t of the voxel planes
-// it crosses; a plane's t is one formula of the ray and the plane's integer index, in double precision.
-// So any stage, in any pass, finds the same t for the same plane, and a ray's state is just the block
-// it is in: nothing accumulates, nothing is derived back from t, and neighbouring cells share their
+// Rays and their parameters (section 3.2). Everything a ray meets is ordered by the parameters t of the
+// voxel planes it crosses; a plane's t is one formula of the ray and the plane's integer index, in double
+// precision. So any stage, in any pass, finds the same t for the same plane, and a ray's state is just the
+// block it is in: nothing accumulates, nothing is derived back from t, and neighbouring cells share their
 // face's t to the last bit.
 
 #define HIT_STEPS 4294967040.0LF // hit keys: the ray's way through the volume in 32-bit fixed point
@@ -38,15 +38,20 @@ double FiniteInverse(double d)
   return abs(d) > 1e-290LF ? 1.0LF / d : 1e290LF;
 }
 
-// The ray through the centre of a pixel, numbered in rows from the bottom left (section 3.2).
+// Centre of a pixel; pixels are numbered in rows from the bottom left.
+dvec2 PixelCentre(uint pixel)
+{
+  return dvec2(double(pixel % uint(scene.Image.x)), double(pixel / uint(scene.Image.x))) + 0.5LF;
+}
+
+// The ray through the centre of a pixel.
 Ray CameraRay(uint pixel)
 {
-  double x = double(pixel % uint(scene.Image.x)) + 0.5LF;
-  double y = double(pixel / uint(scene.Image.x)) + 0.5LF;
+  dvec2 at = PixelCentre(pixel);
   Ray ray;
-  precise dvec3 origin = scene.RayOrigin[0].xyz + x * scene.RayOrigin[1].xyz + y * scene.RayOrigin[2].xyz;
+  precise dvec3 origin = scene.RayOrigin[0].xyz + at.x * scene.RayOrigin[1].xyz + at.y * scene.RayOrigin[2].xyz;
   precise dvec3 direction =
-    scene.RayDirection[0].xyz + x * scene.RayDirection[1].xyz + y * scene.RayDirection[2].xyz;
+    scene.RayDirection[0].xyz + at.x * scene.RayDirection[1].xyz + at.y * scene.RayDirection[2].xyz;
   ray.Origin = origin;
   ray.Direction = direction;
   ray.Inverse = dvec3(FiniteInverse(direction.x), FiniteInverse(direction.y), FiniteInverse(direction.z));
@@ -58,7 +63,47 @@ Ray CameraRay(uint pixel)
   return ray;
 }
 
-// ---- hit keys: unsigned integers in the order of t, so that atomicMin keeps the nearest hit
+// The same ray in view coordinates, where the surface is lit.
+vec3 EyeRayOrigin(uint pixel)
+{
+  dvec2 at = PixelCentre(pixel);
+  return vec3(scene.EyeOrigin[0].xyz + at.x * scene.EyeOrigin[1].xyz + at.y * scene.EyeOrigin[2].xyz);
+}
+
+vec3 EyeRayDirection(uint pixel)
+{
+  dvec2 at = PixelCentre(pixel);
+  return vec3(scene.EyeDirection[0].xyz + at.x * scene.EyeDirection[1].xyz + at.y * scene.EyeDirection[2].xyz);
+}
+
+// ---- tile order: pixels in tiles of 8 x 8, so that neighbours in a work group are neighbours in the image
+uint Tiles(int pixels)
+{
+  return uint(pixels + 7) >> 3;
+}
+
+uint PixelsInTiles()
+{
+  return 64u * Tiles(scene.Image.x) * Tiles(scene.Image.y);
+}
+
+// NONE for those parts of the last tiles that stick out of the image.
+uint PixelInTileOrder(uint order)
+{
+  uint tile = order >> 6;
+  uint x = 8u * (tile % Tiles(scene.Image.x)) + (order & 7u);
+  uint y = 8u * (tile / Tiles(scene.Image.x)) + ((order >> 3) & 7u);
+  return x < uint(scene.Image.x) && y < uint(scene.Image.y) ? y * uint(scene.Image.x) + x : NONE;
+}
+
+uint TileOrderOf(uint pixel)
+{
+  uint x = pixel % uint(scene.Image.x);
+  uint y = pixel / uint(scene.Image.x);
+  return 64u * ((y >> 3) * Tiles(scene.Image.x) + (x >> 3)) + 8u * (y & 7u) + (x & 7u);
+}
+
+// ---- hit keys: unsigned integers in the order of t
 uint HitKey(Ray ray, double t)
 {
   precise double extent = ray.Leave - ray.Enter;

@@ -1,12 +1,11 @@
 // What every stage knows about the image, the camera, the volume and the isovalue: one uniform block,
-// written once per Render by vtkProgressiveIsosurfacePipeline (struct SceneBlock, same order).
+// written once per Render by the mapper (struct SceneBlock, same order).
 
-#define NONE 0xFFFFFFFFu      // no block, no entry, no slot
-#define CLAIMED 0xFFFFFFFEu   // an entry whose cache slot is being assigned in this very dispatch
-#define UNGROUPED 0xFFFFFFFEu // run of a block whose rays are intersected one by one
-#define EXITED 0xFFFFFFFFu    // state of a ray that needs no further block
-#define NO_HIT 0xFFFFFFFFu    // hit key of a ray that has met no surface
-#define MAX_GROUPS 65535u     // OpenGL 4.3's guaranteed number of work groups on an axis
+#define NONE 0xFFFFFFFFu    // no block, no slot, no map page, no pixel
+#define CLAIMED 0xFFFFFFFEu // a macrocell whose map page is being assigned in this very dispatch
+#define NO_HIT 0xFFFFFFFFu  // hit key of a ray that has met no surface
+#define NO_NORMAL 0x80008000u // of a pixel that has none yet; no packed normal has these bits
+#define MAX_GROUPS 65535u   // OpenGL 4.3's guaranteed number of work groups on an axis
 #define MAX_LIGHTS 16
 
 struct Light
@@ -24,12 +23,11 @@ layout(std140, binding = 0) uniform Scene
   dvec4 EyeOrigin[3]; // the same in view coordinates
   dvec4 EyeDirection[3];
   dvec4 RayRange;    // near and far clipping distance
-  ivec4 Samples;     // samples per axis
+  ivec4 Samples;     // samples per axis; w: bits per block of the stream
   ivec4 Blocks;      // ZFP blocks per axis; w: their number
   ivec4 CoarseCells; // macrocells of 4^3 blocks per axis; w: their number
   ivec4 Image;       // width and height of the viewport, its origin in the window
-  uvec4 Payload;     // bits per block, 32-bit words of payload, rays per work item and from how many on a block gets one
-  uvec4 Cache;       // slots, entries of the block map, speculation limit
+  uvec4 Cache;       // slots, pages of the block map, speculation limit, 1 where it cannot grow
   vec4 Isovalue;     // the isovalue as a sum of two floats
   mat4 NormalMatrix; // index-space gradient to view-space normal (3x3)
   vec4 DepthTerms; // clip-space z and w as functions of t: z = x + y t, w = z + w t
@@ -39,3 +37,11 @@ layout(std140, binding = 0) uniform Scene
   Light Lights[MAX_LIGHTS];
 }
 scene;
+
+// Dispatches are folded into two dimensions where one would exceed MAX_GROUPS.
+#ifdef COMPUTE
+uint FoldedGroup()
+{
+  return gl_WorkGroupID.x + gl_NumWorkGroups.x * gl_WorkGroupID.y;
+}
+#endif

@@ -201,7 +201,6 @@ bool NearlySame(const double* a, const double* b)
   return difference <= 1e-7 * size;
 }
 
-constexpr std::size_t LookBegins = offsetof(SceneBlock, NormalMatrix);
 constexpr std::size_t ExactBegins = offsetof(SceneBlock, Samples);
 }
 
@@ -248,14 +247,6 @@ bool SameHits(const SceneBlock& a, const SceneBlock& b)
   }
   return NearlySame(a.RayRange, b.RayRange) && std::equal(a.Image, a.Image + 4, b.Image) &&
     std::equal(a.Isovalue, a.Isovalue + 2, b.Isovalue);
-}
-
-bool SameLook(const SceneBlock& a, const SceneBlock& b)
-{
-  const char* bytesA = reinterpret_cast<const char*>(&a);
-  const char* bytesB = reinterpret_cast<const char*>(&b);
-  return std::memcmp(bytesA + LookBegins, bytesB + LookBegins, sizeof(SceneBlock) - LookBegins) ==
-    0;
 }
 
 void KeepHits(const SceneBlock& from, SceneBlock& to)

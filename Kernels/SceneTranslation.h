@@ -15,16 +15,13 @@ class vtkRenderer;
 class vtkVolume;
 
 /// Rays, image, isovalue, lights and material of a volume seen by a renderer's camera. Samples,
-/// Blocks, CoarseCells, Payload and Cache are the pipeline's own business.
+/// Blocks, CoarseCells and Cache are the pipeline's own business.
 SceneBlock TranslateScene(
   vtkRenderer* renderer, vtkVolume* volume, vtkImageData* image, vtkCompressedVolume* compressed);
 
 /// Do two scenes have the same hits? Cameras are compared with a relative tolerance of 1e-7:
 /// vtkWindowToImageFilter perturbs the view angle by rounding.
 bool SameHits(const SceneBlock& a, const SceneBlock& b);
-
-/// Do two scenes that have the same hits look the same?
-bool SameLook(const SceneBlock& a, const SceneBlock& b);
 
 /// Copy what hits depend on.
 void KeepHits(const SceneBlock& from, SceneBlock& to);

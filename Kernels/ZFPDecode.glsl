@@ -144,7 +144,7 @@ void DecodeBlock(uint block, uint lane)
     return; // a block of zeros
   }
   int exponent = int(TakeBits(bits, ZFP_EXPONENT_BITS)) - ZFP_EXPONENT_BIAS - 30;
-  DecodePlanes(bits, scene.Payload.x - 1u - ZFP_EXPONENT_BITS, lane);
+  DecodePlanes(bits, uint(scene.Samples.w) - 1u - ZFP_EXPONENT_BITS, lane);
   for (uint i = 0u; i < 64u; ++i)
   {
     uint at = ColumnIndex(i, lane);

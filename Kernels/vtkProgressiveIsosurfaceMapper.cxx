@@ -15,6 +15,7 @@
 #include "vtkImageData.h"
 #include "vtkImageZFPCompress.h"
 #include "vtkInformation.h"
+#include "vtkMath.h"
 #include "vtkObjectFactory.h"
 #include "vtkOpenGLRenderWindow.h"
 #include "vtkOpenGLShaderCache.h"
@@ -30,8 +31,47 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
+#include <map>
 #include <tuple>
+#include <vector>
+
+namespace
+{
+// The pipeline's view of a volume; words of 64 bits, as zfp writes them.
+PipelineVolume DescribeVolume(vtkCompressedVolume* source)
+{
+  PipelineVolume volume;
+  volume.Stream = source->GetStream()->GetPointer(0);
+  volume.StreamBytes = source->GetStream()->GetNumberOfValues() / 8 * 8;
+  source->GetDimensions(volume.Samples);
+  volume.BlockBits = source->GetBlockBits();
+  return volume;
+}
+
+// The samples of blocks, 64 each, in x-fastest order.
+void CopyBlocks(
+  const std::vector<float>& values, vtkCompressedVolume* source, vtkFloatArray* samples)
+{
+  int dims[3], blocks[3];
+  source->GetDimensions(dims);
+  source->GetBlocks(blocks);
+  samples->SetNumberOfComponents(1);
+  samples->SetNumberOfTuples(static_cast<vtkIdType>(dims[0]) * dims[1] * dims[2]);
+  vtkIdType sample = 0;
+  for (int z = 0; z < dims[2]; ++z)
+  {
+    for (int y = 0; y < dims[1]; ++y)
+    {
+      for (int x = 0; x < dims[0]; ++x)
+      {
+        const std::int64_t block =
+          x / 4 + blocks[0] * (y / 4 + static_cast<std::int64_t>(blocks[1]) * (z / 4));
+        samples->SetValue(sample++, values[64 * block + x % 4 + 4 * (y % 4) + 16 * (z % 4)]);
+      }
+    }
+  }
+}
+}
 
 //------------------------------------------------------------------------------
 // What the mapper holds behind its interface
@@ -47,9 +87,9 @@ public:
 
   bool UpdateVolume();
   bool BindWindow(vtkOpenGLRenderWindow* window);
-  bool UploadVolume();
+  void HandOverVolume();
   bool UpdateScene(vtkRenderer* renderer, vtkVolume* volume);
-  void Refine(vtkOpenGLRenderWindow* window);
+  bool Refine(vtkOpenGLRenderWindow* window);
   void Composite(vtkOpenGLRenderWindow* window);
   void RequestRender(vtkOpenGLRenderWindow* window);
   void FillStatistics();
@@ -67,12 +107,11 @@ public:
   using SourceKey =
     std::tuple<vtkImageData*, vtkMTimeType, vtkDataArray*, vtkMTimeType, double, int>;
   SourceKey Source;
-  vtkTimeStamp VolumeTime; // of Compressed; the GPU has the one of UploadTime
-  vtkTimeStamp UploadTime;
+  vtkTimeStamp VolumeTime; // of Compressed; the pipeline has the one of HandOverTime
+  vtkTimeStamp HandOverTime;
 
   SceneBlock Scene;
   bool HaveScene = false;
-  bool ShadeAgain = false;
   double TotalMilliseconds = 0.0;
 
   vtkWeakPointer<vtkRenderWindowInteractor> Interactor;
@@ -204,7 +243,7 @@ bool vtkProgressiveIsosurfaceMapper::Internals::BindWindow(vtkOpenGLRenderWindow
   }
   this->Window = window;
   window->GetShaderCache()->ReleaseCurrentShader();
-  return this->Pipeline.Initialize() || this->Report(this->Pipeline.GetError());
+  return this->Pipeline.Initialize(window) || this->Report(this->Pipeline.GetError());
 }
 
 void vtkProgressiveIsosurfaceMapper::Internals::ReleaseGraphics()
@@ -215,59 +254,52 @@ void vtkProgressiveIsosurfaceMapper::Internals::ReleaseGraphics()
     this->Pipeline.Release();
   }
   this->Window = nullptr;
-  this->UploadTime = vtkTimeStamp();
+  this->HandOverTime = vtkTimeStamp();
   this->HaveScene = false;
 }
 
-bool vtkProgressiveIsosurfaceMapper::Internals::UploadVolume()
+// The stream stays here, in Volume, for as long as the pipeline may want to upload it.
+void vtkProgressiveIsosurfaceMapper::Internals::HandOverVolume()
 {
-  if (this->UploadTime > this->VolumeTime)
+  if (this->HandOverTime < this->VolumeTime)
   {
-    return true;
+    this->HaveScene = false;
+    this->Pipeline.SetVolume(DescribeVolume(this->Volume));
+    this->HandOverTime.Modified();
   }
-  PipelineVolume volume;
-  vtkUnsignedCharArray* stream = this->Volume->GetStream();
-  volume.Stream = stream->GetPointer(0);
-  volume.StreamBytes = stream->GetNumberOfValues() / 8 * 8;
-  this->Volume->GetDimensions(volume.Samples);
-  volume.BlockBits = this->Volume->GetBlockBits();
-  this->HaveScene = false;
-  if (!this->Pipeline.SetVolume(volume))
-  {
-    return this->Report(this->Pipeline.GetError());
-  }
-  this->UploadTime.Modified();
-  return true;
 }
 
 //------------------------------------------------------------------------------
 // The image
 //------------------------------------------------------------------------------
-// Restarts the image where its hits change, and orders new shading where only its look does.
+// Restarts the image where its hits change; a new look is a matter of the composite alone.
 bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(
   vtkRenderer* renderer, vtkVolume* volume)
 {
   SceneBlock scene = TranslateScene(renderer, volume, this->Compressed, this->Volume);
   const bool sameHits = this->HaveScene && SameHits(this->Scene, scene);
-  const bool sameLook = sameHits && SameLook(this->Scene, scene);
   if (sameHits)
   {
     KeepHits(this->Scene, scene);
   }
   this->Scene = scene;
   this->HaveScene = true;
-  this->Pipeline.SetLimits(
-    this->Owner->CacheLimit, this->Owner->SpeculationLimit, this->Owner->GroupingThreshold);
-  if (!this->Pipeline.SetScene(scene))
+  PipelineSettings settings;
+  settings.MemoryBudget = this->Owner->MemoryBudget;
+  settings.LargestBuffer = this->Owner->LargestBuffer;
+  settings.SpeculationLimit = this->Owner->SpeculationLimit;
+  settings.DecodeWholeVolume = this->Owner->DecodeWholeVolume;
+  settings.Detailed = this->Owner->DetailedStatistics;
+  this->Pipeline.SetSettings(settings);
+  if (!this->Pipeline.SetScene(scene, !sameHits))
   {
     return this->Report(this->Pipeline.GetError());
   }
-  if (!sameHits)
+  if (!sameHits || !this->Pipeline.IsStarted())
   {
     this->TotalMilliseconds = 0.0;
     this->Pipeline.Start();
   }
-  this->ShadeAgain = sameHits && !sameLook;
   return true;
 }
 
@@ -279,7 +311,8 @@ bool vtkProgressiveIsosurfaceMapper::Internals::MayRefineLater(vtkOpenGLRenderWi
     window->GetSwapBuffers();
 }
 
-void vtkProgressiveIsosurfaceMapper::Internals::Refine(vtkOpenGLRenderWindow* window)
+// Passes, as many as there is time for, and the image as far as it has come.
+bool vtkProgressiveIsosurfaceMapper::Internals::Refine(vtkOpenGLRenderWindow* window)
 {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
@@ -295,13 +328,18 @@ void vtkProgressiveIsosurfaceMapper::Internals::Refine(vtkOpenGLRenderWindow* wi
   {
     this->Pipeline.RunPasses(this->Owner->MaximumPassesPerRender, interactive, stop);
   }
-  if (unfinished || this->ShadeAgain)
+  if (!this->Pipeline.GetError().empty())
   {
-    this->Pipeline.ShadeHits(this->ShadeAgain);
+    return this->Report(this->Pipeline.GetError());
+  }
+  this->Composite(window);
+  this->Pipeline.CompleteStatistics();
+  if (unfinished)
+  {
     this->TotalMilliseconds +=
       std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   }
-  this->ShadeAgain = false;
+  return true;
 }
 
 void vtkProgressiveIsosurfaceMapper::Internals::Composite(vtkOpenGLRenderWindow* window)
@@ -364,13 +402,14 @@ void vtkProgressiveIsosurfaceMapper::Internals::FillStatistics()
   vtkTable* table = statistics->Passes;
   const std::vector<TimedPass>& passes = this->Pipeline.GetPasses();
   const double pixels = static_cast<double>(this->Scene.Image[0]) * this->Scene.Image[1];
+  const double uncounted = this->Owner->DetailedStatistics ? 0.0 : vtkMath::Nan();
   table->SetNumberOfRows(static_cast<vtkIdType>(passes.size()));
   for (std::size_t i = 0; i < passes.size(); ++i)
   {
     const TimedPass& p = passes[i];
     const double row[] = { static_cast<double>(i), static_cast<double>(p.ActiveRays),
       static_cast<double>(p.Speculation), static_cast<double>(p.Pairs),
-      static_cast<double>(p.VisibleBlocks), static_cast<double>(p.ActiveBlocks),
+      p.VisibleBlocks + uncounted, p.ActiveBlocks + uncounted,
       static_cast<double>(p.DecodedBlocks), static_cast<double>(p.CachedBlocks),
       1.0 - p.RemainingRays / pixels, p.ElapsedMilliseconds };
     for (int column = 0; column < table->GetNumberOfColumns(); ++column)
@@ -379,7 +418,7 @@ void vtkProgressiveIsosurfaceMapper::Internals::FillStatistics()
         ->SetValue(static_cast<vtkIdType>(i), row[column]);
     }
   }
-  const PipelineResources& resources = this->Pipeline.GetResources();
+  PipelineResources& resources = this->Pipeline.GetResources();
   statistics->Buffers.clear();
   for (const BufferInfo& info : PipelineBuffers())
   {
@@ -392,11 +431,19 @@ void vtkProgressiveIsosurfaceMapper::Internals::FillStatistics()
   statistics->Buffers.emplace_back("staging", resources.GetStagingBytes());
   statistics->Stages.clear();
   statistics->StagesLeftOut.clear();
+  std::map<Stage, double> milliseconds = resources.GetStageMilliseconds();
   for (const StageInfo& info : PipelineStages())
   {
-    const bool ran = resources.GetStagesRun().count(info.Id) > 0;
-    (ran ? statistics->Stages : statistics->StagesLeftOut).emplace_back(info.Name);
+    if (resources.GetStagesRun().count(info.Id) > 0)
+    {
+      statistics->Stages.emplace_back(info.Name, milliseconds[info.Id]);
+    }
+    else
+    {
+      statistics->StagesLeftOut.emplace_back(info.Name);
+    }
   }
+  statistics->MemoryBudget = this->Pipeline.GetMemoryBudget();
   statistics->TotalMilliseconds = this->TotalMilliseconds;
   statistics->Converged = this->Pipeline.GetConverged();
   statistics->GLDescription = PipelineResources::GetDescription();
@@ -421,8 +468,10 @@ void vtkProgressiveIsosurfaceMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Rate: " << this->Rate << "\n";
   os << indent << "Component: " << this->Component << "\n";
   os << indent << "SpeculationLimit: " << this->SpeculationLimit << "\n";
-  os << indent << "GroupingThreshold: " << this->GroupingThreshold << "\n";
-  os << indent << "CacheLimit: " << this->CacheLimit << "\n";
+  os << indent << "MemoryBudget: " << this->MemoryBudget << "\n";
+  os << indent << "DecodeWholeVolume: " << this->DecodeWholeVolume << "\n";
+  os << indent << "LargestBuffer: " << this->LargestBuffer << "\n";
+  os << indent << "DetailedStatistics: " << this->DetailedStatistics << "\n";
   os << indent << "MaximumPassesPerRender: " << this->MaximumPassesPerRender << "\n";
   os << indent << "TimeAllowance: " << this->TimeAllowance << "\n";
   os << indent << "Statistics:\n";
@@ -473,18 +522,15 @@ void vtkProgressiveIsosurfaceMapper::Render(vtkRenderer* renderer, vtkVolume* vo
       "renders one isosurface: the property's first isovalue is taken, the others are not");
   }
   window->MakeCurrent();
-  if (!this->Impl->BindWindow(window) || !this->Impl->UploadVolume() ||
-    !this->Impl->UpdateScene(renderer, volume))
+  if (!this->Impl->BindWindow(window))
   {
     return;
   }
-  this->Impl->Refine(window);
-  if (!this->Impl->Pipeline.GetError().empty())
+  this->Impl->HandOverVolume();
+  if (!this->Impl->UpdateScene(renderer, volume) || !this->Impl->Refine(window))
   {
-    vtkErrorMacro(<< this->Impl->Pipeline.GetError());
     return;
   }
-  this->Impl->Composite(window);
   this->Impl->FillStatistics();
   double fraction = this->GetCompletedFraction();
   this->InvokeEvent(vtkCommand::ProgressEvent, &fraction);
@@ -542,41 +588,21 @@ bool vtkProgressiveIsosurfaceMapper::DecodeOnGPU(
   }
   glWindow->Initialize();
   glWindow->MakeCurrent();
-  PipelineVolume volume;
-  volume.Stream = source->GetStream()->GetPointer(0);
-  volume.StreamBytes = source->GetStream()->GetNumberOfValues() / 8 * 8;
-  source->GetDimensions(volume.Samples);
-  volume.BlockBits = source->GetBlockBits();
-  ProgressivePipeline pipeline;
   glWindow->GetShaderCache()->ReleaseCurrentShader();
-  bool good = pipeline.Initialize() && pipeline.SetVolume(volume);
-  samples->SetNumberOfComponents(1);
-  samples->SetNumberOfTuples(
-    static_cast<vtkIdType>(volume.Samples[0]) * volume.Samples[1] * volume.Samples[2]);
-  constexpr std::int64_t batch = 4096;
-  std::vector<float> values(64 * batch);
-  int blocks[3];
-  source->GetBlocks(blocks);
-  const std::int64_t total = source->GetNumberOfBlocks();
-  for (std::int64_t first = 0; good && first < total; first += batch)
+  ProgressivePipeline pipeline;
+  std::vector<float> values;
+  bool good = pipeline.Initialize(glWindow);
+  if (good)
   {
-    const std::int64_t count = std::min(batch, total - first);
-    good = pipeline.DecodeBlocks(first, count, values.data());
-    for (std::int64_t i = 0; good && i < 64 * count; ++i)
-    {
-      const std::int64_t block = first + i / 64;
-      const int x = static_cast<int>(4 * (block % blocks[0]) + i % 4);
-      const int y = static_cast<int>(4 * (block / blocks[0] % blocks[1]) + i / 4 % 4);
-      const int z = static_cast<int>(4 * (block / blocks[0] / blocks[1]) + i / 16 % 4);
-      if (x < volume.Samples[0] && y < volume.Samples[1] && z < volume.Samples[2])
-      {
-        samples->SetValue(
-          x + volume.Samples[0] * (y + static_cast<vtkIdType>(volume.Samples[1]) * z), values[i]);
-      }
-    }
+    pipeline.SetVolume(DescribeVolume(source));
+    good = pipeline.DecodeVolume(values);
   }
   const std::string error = pipeline.GetError();
   pipeline.Release();
   glUseProgram(0);
+  if (good)
+  {
+    CopyBlocks(values, source, samples);
+  }
   return good || this->Impl->Report(error);
 }

@@ -22,7 +22,7 @@
  * window that does not swap buffers, as when ParaView takes a screenshot) it completes the image. A
  * vtkWindowToImageFilter on an interactive window gives no such sign: let GetConverged() be true,
  * or the time allowance be large, before it captures. A change of camera, size, isovalue or input
- * restarts the image. The complete image does not depend on the speculation, the cache's size or
+ * restarts the image. The complete image does not depend on the speculation, the memory budget or
  * the number of passes per render.
  *
  * Needs OpenGL 4.3. Add it to a scene with a vtkIsosurfaceVolume, which draws in the opaque pass; a
@@ -80,22 +80,43 @@ public:
 
   ///@{
   /**
-   * Bound in bytes on the GPU memory of the block cache with its bookkeeping; 0 (default):
-   * automatic, at most 1 GiB. The cache starts small and grows up to this bound as the scene
-   * demands. It never gets smaller than the 128 blocks that the algorithm needs to get on.
+   * Bound in bytes on all GPU memory that the mapper holds beside the compressed stream, for any
+   * view, isovalue and image size; 0 (default): automatic, a quarter of what the GPU has, but not
+   * more than 1 GiB for decoded blocks. Where what a pass needs does not fit, fewer rays take part
+   * in it; the complete image is the same. A budget too small to work at all is an error that names
+   * the least that is enough. GetStatistics()->GetMemoryBudget() tells the bound in force.
    */
-  vtkSetClampMacro(CacheLimit, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
-  vtkGetMacro(CacheLimit, vtkTypeInt64);
+  vtkSetClampMacro(MemoryBudget, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
+  vtkGetMacro(MemoryBudget, vtkTypeInt64);
   ///@}
 
   ///@{
   /**
-   * Blocks that fewer rays visit in a pass are not given a work group each: their rays are
-   * intersected one by one. Same result; which is faster depends on the GPU. -1 (default):
-   * automatic, 8 on GPUs and 0 on software renderers.
+   * Whether a volume that fits the memory budget when it is decoded is decoded at once: no cache,
+   * no waiting rays, one pass, and the compressed stream leaves the GPU. Default on. Same image.
    */
-  vtkSetClampMacro(GroupingThreshold, int, -1, VTK_INT_MAX);
-  vtkGetMacro(GroupingThreshold, int);
+  vtkSetMacro(DecodeWholeVolume, bool);
+  vtkGetMacro(DecodeWholeVolume, bool);
+  vtkBooleanMacro(DecodeWholeVolume, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Bound in bytes on one GPU buffer, for tests; 0 (default): what OpenGL allows. A compressed
+   * stream that is longer lies in several.
+   */
+  vtkSetClampMacro(LargestBuffer, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
+  vtkGetMacro(LargestBuffer, vtkTypeInt64);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the statistics tell the milliseconds of each stage and the distinct blocks of each
+   * pass. Costs time and 8 bytes a cache slot. Default off.
+   */
+  vtkSetMacro(DetailedStatistics, bool);
+  vtkGetMacro(DetailedStatistics, bool);
+  vtkBooleanMacro(DetailedStatistics, bool);
   ///@}
 
   ///@{
@@ -159,8 +180,10 @@ protected:
   double Rate = 8.0;
   int Component = 0;
   int SpeculationLimit = 64;
-  int GroupingThreshold = -1;
-  vtkTypeInt64 CacheLimit = 0;
+  vtkTypeInt64 MemoryBudget = 0;
+  bool DecodeWholeVolume = true;
+  vtkTypeInt64 LargestBuffer = 0;
+  bool DetailedStatistics = false;
   int MaximumPassesPerRender = 0;
   double TimeAllowance = 0.05;
 

@@ -27,6 +27,7 @@ void vtkProgressiveIsosurfaceStatistics::PrintSelf(ostream& os, vtkIndent indent
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Passes: " << this->GetNumberOfPasses() << "\n";
   os << indent << "TotalMilliseconds: " << this->TotalMilliseconds << "\n";
+  os << indent << "MemoryBudget: " << this->MemoryBudget << "\n";
   os << indent << "TotalBytes: " << this->GetTotalBytes() << "\n";
   for (const auto& buffer : this->Buffers)
   {
@@ -88,7 +89,12 @@ vtkTypeInt64 vtkProgressiveIsosurfaceStatistics::GetBufferBytes(int i)
 
 const char* vtkProgressiveIsosurfaceStatistics::GetStage(int i)
 {
-  return i >= 0 && i < this->GetNumberOfStages() ? this->Stages[i].c_str() : nullptr;
+  return i >= 0 && i < this->GetNumberOfStages() ? this->Stages[i].first.c_str() : nullptr;
+}
+
+double vtkProgressiveIsosurfaceStatistics::GetStageMilliseconds(int i)
+{
+  return i >= 0 && i < this->GetNumberOfStages() ? this->Stages[i].second : 0.0;
 }
 
 const char* vtkProgressiveIsosurfaceStatistics::GetStageLeftOut(int i)

@@ -7,18 +7,18 @@
  * The one structure for C++, Python and the command line. Per pass, in the columns of
  * GetPassTable():
  *
- * | column         | meaning | | -------------- |
- * ------------------------------------------------------------------------------- | | pass | 0, 1,
- * …                                                                         | | active_rays    |
- * rays that took part                                                             | | speculation
- * | blocks that a ray might ask for (N_spec, section 4 of the paper)                | | pairs |
- * ray-block pairs that were intersected                                           | |
- * visible_blocks | blocks that rays were intersected with | | active_blocks  | those and the
- * neighbours that their dual grids reach into                       | | decoded_blocks | active
- * blocks that the cache did not hold                                       | | cached_blocks  |
- * cache slots in use after the pass                                               | | completed |
- * fraction of the pixels that are complete after the pass, 0 … 1                  | | elapsed_ms |
- * milliseconds from the start of the image to the end of the pass                 |
+ * - pass: 0, 1, …
+ * - active_rays: rays that were cast (those that miss the volume or wait for memory are not)
+ * - speculation: blocks that a ray might ask for (N_spec, section 4 of the paper)
+ * - pairs: ray-block pairs that were intersected
+ * - visible_blocks: distinct blocks that rays were intersected with (*)
+ * - active_blocks: those and the neighbours that they reached into (*)
+ * - decoded_blocks: blocks that were decoded
+ * - cached_blocks: cache slots in use after the pass
+ * - completed: fraction of the pixels that are complete after the pass, 0 … 1
+ * - elapsed_ms: milliseconds from the start of the image to the end of the pass
+ *
+ * (*) counted where the mapper's DetailedStatistics are on, else NaN.
  *
  * Times are the GPU's (timer queries), or wall clock where the renderer is Mesa's llvmpipe, whose
  * timer queries are not credible.
@@ -56,7 +56,7 @@ public:
   ///@}
 
   /**
-   * Milliseconds spent in Render() on this image: passes, shading and compositing, wall clock.
+   * Milliseconds spent in Render() on this image: passes and compositing, wall clock.
    */
   double GetTotalMilliseconds() { return this->TotalMilliseconds; }
 
@@ -72,13 +72,20 @@ public:
   vtkTypeInt64 GetBufferBytes(int i);
   ///@}
 
+  /**
+   * The memory budget in force, in bytes: the mapper's, or what it chose itself.
+   */
+  vtkTypeInt64 GetMemoryBudget() { return this->MemoryBudget; }
+
   ///@{
   /**
    * Stages that ran for this image (and for its volume), and those left out because the scene did
-   * not need them, by the names of their GLSL files.
+   * not need them, by the names of their GLSL files. With the mapper's DetailedStatistics, the
+   * milliseconds that a stage took for this image, all passes together; else 0.
    */
   int GetNumberOfStages() { return static_cast<int>(this->Stages.size()); }
   const char* GetStage(int i);
+  double GetStageMilliseconds(int i);
   int GetNumberOfStagesLeftOut() { return static_cast<int>(this->StagesLeftOut.size()); }
   const char* GetStageLeftOut(int i);
   ///@}
@@ -105,7 +112,8 @@ private:
   vtkNew<vtkTable> Passes;
   double TotalMilliseconds = 0.0;
   std::vector<std::pair<std::string, vtkTypeInt64>> Buffers;
-  std::vector<std::string> Stages;
+  vtkTypeInt64 MemoryBudget = 0;
+  std::vector<std::pair<std::string, double>> Stages;
   std::vector<std::string> StagesLeftOut;
   bool Converged = false;
   std::string GLDescription;

@@ -149,7 +149,16 @@ def _add_render(commands):
     )  # fmt: skip
     command.add_argument("--stats", type=Path, metavar="JSON", help="write the statistics")
     command.add_argument(
-        "--no-speculation", action="store_true", help="test one block per ray and pass only"
+        "--detailed", action="store_true",
+        help="count distinct blocks and time every stage, which takes time itself",
+    )  # fmt: skip
+    command.add_argument(
+        "--memory-budget", type=_bytes, default=0, metavar="BYTES",
+        help="bound on the GPU memory beside the compressed volume, as 200000000, 200M or 1.5G; "
+        "0 (default): automatic",
+    )  # fmt: skip
+    command.add_argument(
+        "--no-speculation", action="store_true", help="ask for one block per ray and pass only"
     )
 
 
@@ -225,6 +234,11 @@ def _vector(text):
         return tuple(map(float, parts))
     except ValueError:
         raise argparse.ArgumentTypeError(f"'{text}' does not look like 0.5,-1,0.25") from None
+
+
+def _bytes(text):
+    number, unit = _pattern(text, r"(\d+(?:\.\d+)?)([KMG]?)", "200000000, 200M or 1.5G")
+    return int(float(number) * 1024 ** " KMG".index(unit or " "))
 
 
 def _zfp_header(text):
@@ -348,6 +362,8 @@ def _render(parsed):
             parsed.color,
             parsed.background,
             progress,
+            parsed.memory_budget,
+            parsed.detailed,
         )
     _write_results(result, parsed)
     _print_summary(result)

@@ -20,7 +20,7 @@ def make_isosurface(
     color=(1.0, 1.0, 1.0),
     rate=8.0,
     speculation=True,
-    cache_limit=0,
+    memory_budget=0,
     shade=True,
     ambient=0.05,
     diffuse=0.8,
@@ -41,8 +41,9 @@ def make_isosurface(
         Bits per sample for a plain image, in (0, 32].
     speculation : bool or int, default: True
         Whether rays test several blocks ahead in one pass, or how many at most (1 to 64).
-    cache_limit : int, default: 0
-        Bytes of GPU memory for decoded blocks; 0 for the mapper's own choice.
+    memory_budget : int, default: 0
+        Bound in bytes on the GPU memory beside the compressed volume; 0 for the mapper's own
+        choice.
     shade : bool, default: True
         Whether light falls on the surface; without, it has the plain colour.
     ambient, diffuse, specular, specular_power : float
@@ -73,7 +74,7 @@ def make_isosurface(
     mapper.SetInputData(image_data(image))
     mapper.SetRate(_in_range("rate", rate, 0, 32, above=True))
     mapper.SetSpeculationLimit(_speculation_limit(speculation))
-    mapper.SetCacheLimit(int(_in_range("cache_limit", cache_limit, 0, 2**62)))
+    mapper.SetMemoryBudget(int(_in_range("memory_budget", memory_budget, 0, 2**62)))
     properties = vtkVolumeProperty()
     properties.GetIsoSurfaceValues().SetValue(0, _finite("isovalue", isovalue))
     properties.SetColor(_constant_color(color))

@@ -24,7 +24,7 @@ def add_isosurface(
     color=None,
     rate=8.0,
     speculation=True,
-    cache_limit=0,
+    memory_budget=0,
     lighting=True,
     ambient=0.05,
     diffuse=0.8,
@@ -60,8 +60,9 @@ def add_isosurface(
         Bits per sample that plain data are compressed to, in (0, 32].
     speculation : bool or int, default: True
         Whether rays test several blocks ahead in one pass, or how many at most (1 to 64).
-    cache_limit : int, default: 0
-        Bytes of GPU memory for decoded blocks; 0 for the mapper's own choice.
+    memory_budget : int, default: 0
+        Bound in bytes on the GPU memory beside the compressed volume; 0 for the mapper's own
+        choice.
     lighting : bool, default: True
         Whether light falls on the surface.
     ambient, diffuse, specular : float
@@ -111,7 +112,7 @@ def add_isosurface(
         color=pyvista.Color(color, default_color=pyvista.global_theme.color).float_rgb,
         rate=rate,
         speculation=speculation,
-        cache_limit=cache_limit,
+        memory_budget=memory_budget,
         shade=lighting,
         ambient=ambient,
         diffuse=diffuse,
@@ -260,7 +261,7 @@ class IsosurfaceComponent:
         isovalue : float
             In the units of the volume's values.
         **kwargs : dict, optional
-            ``scalars``, ``component``, ``color``, ``rate``, ``speculation``, ``cache_limit``,
+            ``scalars``, ``component``, ``color``, ``rate``, ``speculation``, ``memory_budget``,
             ``lighting``, ``ambient``, ``diffuse``, ``specular``, ``specular_power``, ``name``,
             ``reset_camera``, ``pickable``, ``render`` and ``user_matrix``.
 

@@ -59,6 +59,8 @@ def render(
     color="oldlace",
     background="#20242b",
     progress=None,
+    memory_budget=0,
+    detailed=False,
 ):
     """Render an isosurface off screen until it is complete.
 
@@ -84,6 +86,12 @@ def render(
         A colour's name, ``#rrggbb``, or red, green and blue from 0 to 1.
     progress : callable, optional
         Called with the fraction done, from 0 to 1, while a plain image is compressed.
+    memory_budget : int, default: 0
+        Bound in bytes on the GPU memory beside the compressed volume; 0 for the mapper's own
+        choice.
+    detailed : bool, default: False
+        Whether the statistics tell the time of each stage and the distinct blocks of each pass,
+        which costs time itself.
 
     Returns
     -------
@@ -111,7 +119,14 @@ def render(
     if orbit is not None:
         camera = orbit_camera(image_data(image), *orbit)
     image = as_compressed(image, rate, array, component, progress)
-    volume = make_isosurface(image, isovalue, parse_color(color), speculation=speculation)
+    volume = make_isosurface(
+        image,
+        isovalue,
+        parse_color(color),
+        speculation=speculation,
+        memory_budget=memory_budget,
+    )
+    volume.GetMapper().SetDetailedStatistics(bool(detailed))
     window, renderer = _scene(volume, width, height, parse_color(background))
     (camera or view_camera(image, aspect=width / height)).apply(renderer.GetActiveCamera())
     renderer.ResetCameraClippingRange()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
@@ -40,14 +42,18 @@ def statistics(mapper, renderer=None):
     dict
         ``passes``
             One dict a pass, with the keys of `PASS_KEYS`: counts, ``completed`` from 0 to 1 and
-            ``elapsed_ms``.
+            ``elapsed_ms``. ``visible_blocks`` and ``active_blocks`` are None unless the mapper's
+            ``DetailedStatistics`` are on.
         ``total_ms``
             Milliseconds over all passes.
         ``memory``
-            GPU memory in bytes: ``buffers`` {name: bytes}, their ``total``, and ``compressed``,
-            the part of it that is the compressed stream.
+            GPU memory in bytes: ``buffers`` {name: bytes}, their ``total``, ``compressed``, the
+            part of it that is the compressed stream, and ``budget``, the bound on the rest.
         ``stages``, ``left_out``
             Names of the stages that ran, and of those that the scene did not need.
+        ``stage_ms``
+            Milliseconds by stage, all passes together; empty unless the mapper's
+            ``DetailedStatistics`` are on.
         ``converged``
             Whether the image is complete.
         ``gl``
@@ -64,7 +70,7 @@ def statistics(mapper, renderer=None):
     (True, 'BlockRanges')
     """
     source = mapper.GetStatistics()
-    names = range(source.GetNumberOfBuffers())
+    names, stages = range(source.GetNumberOfBuffers()), range(source.GetNumberOfStages())
     values = {
         "passes": [_pass_values(source, i) for i in range(source.GetNumberOfPasses())],
         "total_ms": source.GetTotalMilliseconds(),
@@ -72,9 +78,11 @@ def statistics(mapper, renderer=None):
             "buffers": {source.GetBufferName(i): source.GetBufferBytes(i) for i in names},
             "total": source.GetTotalBytes(),
             "compressed": source.GetCompressedBytes(),
+            "budget": source.GetMemoryBudget(),
         },
-        "stages": [source.GetStage(i) for i in range(source.GetNumberOfStages())],
+        "stages": [source.GetStage(i) for i in stages],
         "left_out": [source.GetStageLeftOut(i) for i in range(source.GetNumberOfStagesLeftOut())],
+        "stage_ms": _stage_milliseconds(source) if mapper.GetDetailedStatistics() else {},
         "converged": bool(source.GetConverged()),
         "gl": source.GetGLDescription(),
     }
@@ -86,8 +94,17 @@ def statistics(mapper, renderer=None):
 
 def _pass_values(source, i):
     values = {key: source.GetPassValue(i, key) for key in PASS_KEYS}
-    whole = {key: int(v) for key, v in values.items() if key not in _FRACTIONAL and v == int(v)}
-    return {**values, **whole}
+    return {key: v if key in _FRACTIONAL else _count(v) for key, v in values.items()}
+
+
+def _count(value):
+    """A whole number, or None where it was not counted."""
+    return None if math.isnan(value) else int(value)
+
+
+def _stage_milliseconds(source):
+    stages = range(source.GetNumberOfStages())
+    return {source.GetStage(i): source.GetStageMilliseconds(i) for i in stages}
 
 
 def depth(mapper):

@@ -251,9 +251,9 @@ void vtkProgressiveIsosurfaceRepresentation::SetSpeculation(bool on)
 }
 
 //------------------------------------------------------------------------------
-void vtkProgressiveIsosurfaceRepresentation::SetCacheLimit(int mebibytes)
+void vtkProgressiveIsosurfaceRepresentation::SetMemoryBudget(int mebibytes)
 {
-  this->GetIsosurfaceMapper()->SetCacheLimit(static_cast<vtkTypeInt64>(mebibytes) << 20);
+  this->GetIsosurfaceMapper()->SetMemoryBudget(static_cast<vtkTypeInt64>(mebibytes) << 20);
 }
 
 //------------------------------------------------------------------------------

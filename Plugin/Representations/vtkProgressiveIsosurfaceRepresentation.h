@@ -57,12 +57,12 @@ public:
 
   ///@{
   /**
-   * Forwarded to the mapper: bits per voxel for plain data, speculation on or off, and the block
-   * cache's limit in mebibytes (0: automatic).
+   * Forwarded to the mapper: bits per voxel for plain data, speculation on or off, and the
+   * memory budget in mebibytes (0: automatic).
    */
   void SetRate(double bitsPerVoxel);
   void SetSpeculation(bool on);
-  void SetCacheLimit(int mebibytes);
+  void SetMemoryBudget(int mebibytes);
   ///@}
 
   ///@{

@@ -1,17 +1,21 @@
 """Scenes with the mapper in them, and how their depth is judged by the caster."""
 
 import itertools
+import re
 
 import numpy as np
 import tolerances
 from oracle.caster import Camera, cast
 from progiso import depth, statistics, vtkIsosurfaceVolume, vtkProgressiveIsosurfaceMapper
-from support import reference_volume
+from support import reference_volume, vtk_messages
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow, vtkWindowToImageFilter
 
 MANY_RENDERS = 5000
+
+#: Settings under which also a small volume goes through cache, passes and speculation.
+CACHED = {"DecodeWholeVolume": False}
 
 
 class Scene:
@@ -104,6 +108,14 @@ class Scene:
         grab.Update()
         width, height, _ = grab.GetOutput().GetDimensions()
         return vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars()).reshape(height, width, -1)[::-1, :, :3].copy()
+
+
+def least_budget(image, isovalue, camera, size=(160, 120)):
+    """Return the least memory budget that a scene can work with, as the error says that one byte is too little."""
+    scene = Scene(image, isovalue, camera, size, MemoryBudget=1)
+    with vtk_messages() as messages:
+        scene.window.Render()
+    return int(re.search(r"at least (\d+) bytes", "".join(messages))[1])
 
 
 def orbit(volume, i, n, view_angle=50.0, distance=1.5):

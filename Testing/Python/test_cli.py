@@ -94,14 +94,23 @@ def test_render(folder):
     check_memory(image, statistics)
 
 
-def test_speculation_only_saves_passes(folder):
-    arguments = ("packed.vti", "--size", "160x120", "--orbit", "2/5")
-    with_it, fast = render(folder, *arguments)
-    without, slow = render(folder, *arguments, "--no-speculation")
-    assert np.isfinite(with_it).any()
-    assert with_it.tobytes() == without.tobytes()
-    assert len(fast["passes"]) < len(slow["passes"])
+def test_speculation_and_memory_budget_change_no_depth(folder):
+    """Speculation only saves passes; with little memory the image is the same."""
+    progiso.save(progiso.compress(make_image(blobs((90, 80, 100), 3, waves=6)), 6), folder / "large.vti")
+    arguments = ("large.vti", "--size", "160x120", "--orbit", "2/5")
+    whole, at_once = render(folder, *arguments)
+    little = (*arguments, "--memory-budget", "2M", "--detailed")
+    with_it, fast = render(folder, *little)
+    without, slow = render(folder, *little, "--no-speculation")
+    assert np.isfinite(whole).any()
+    assert whole.tobytes() == with_it.tobytes() == without.tobytes()
+    assert 1 == len(at_once["passes"]) < len(fast["passes"]) < len(slow["passes"])
     assert all(p["speculation"] == 1 for p in slow["passes"])
+    for statistics in (fast, slow):
+        assert statistics["memory"]["budget"] == 2 << 20
+        assert statistics["memory"]["total"] - statistics["memory"]["compressed"] <= 2 << 20
+        assert statistics["stage_ms"]["CastRays"] > 0
+    assert at_once["stage_ms"] == {}
 
 
 def test_render_plain_at_a_rate(folder):
@@ -164,6 +173,8 @@ FAILURES = {
     "decompress plain": (["decompress", "plain.vti", "x.vti"], "compressed"),
     "size": (["render", "packed.vti", "--isovalue", "0", "--size", "0x5"], "0x5"),
     "orbit": (["render", "packed.vti", "--isovalue", "0", "--orbit", "5/5"], "5/5"),
+    "budget": (["render", "packed.vti", "--isovalue", "0", "--memory-budget", "1000"], "at least"),
+    "budget's unit": (["render", "packed.vti", "--isovalue", "0", "--memory-budget", "3T"], "3T"),
     "isovalue": (["render", "packed.vti", "--isovalue", "nan"], "isovalue"),
     "output": (["compress", "plain.vti", "nowhere/x.vti"], "nowhere"),
 }

@@ -4,24 +4,27 @@ import numpy as np
 import progiso
 import pytest
 from oracle.caster import Camera
-from scenes import Scene, orbit
-from support import blobs, make_image, marschner_lobb, noise, reference_volume
+from scenes import CACHED, Scene, least_budget, orbit
+from support import blobs, make_image, marschner_lobb, noise, reference_volume, stream_of, vtk_messages
 
+# large enough that the smallest cache does not hold them
 FIELDS = {
-    "noise": (lambda: noise((30, 26, 34), 1), 1.2),
-    "marschner-lobb": (lambda: marschner_lobb(48), 0.5),
-    "blobs": (lambda: blobs((37, 41, 45), 2), 0.1),
+    "noise": (lambda: noise((60, 56, 64), 1), 1.2),
+    "marschner-lobb": (lambda: marschner_lobb(64), 0.5),
+    "blobs": (lambda: blobs((73, 81, 89), 2, waves=6), 0.1),
 }
 
 
 @pytest.fixture(scope="module", params=FIELDS)
 def case(request):
-    """A field, an isovalue, a camera, and the depth image that one plain run gives."""
+    """A field, an isovalue, a camera, and the depth image of one pass over the decoded volume."""
     field, isovalue = FIELDS[request.param]
     image = progiso.compress(make_image(field()), 8)
     camera = orbit(reference_volume(image), 2, 5)
-    depth = Scene(image, isovalue, camera).depth()
+    scene = Scene(image, isovalue, camera)
+    depth = scene.depth()
     assert np.isfinite(depth).mean() > 0.05
+    assert len(scene.statistics()["passes"]) == 1
     return image, isovalue, camera, depth
 
 
@@ -36,50 +39,103 @@ def same(case, **settings):
     return scene.statistics()
 
 
+def beside_the_stream(statistics):
+    return statistics["memory"]["total"] - statistics["memory"]["compressed"]
+
+
 @pytest.mark.parametrize("limit", [1, 2, 7, 64])
 def test_speculation(case, limit):
-    passes = len(same(case, SpeculationLimit=limit)["passes"])
+    passes = len(same(case, SpeculationLimit=limit, **CACHED)["passes"])
     if limit == 1:
-        assert passes > len(same(case, SpeculationLimit=64)["passes"])
+        assert passes > len(same(case, SpeculationLimit=64, **CACHED)["passes"])
 
 
-@pytest.mark.parametrize("limit", [1, 1 << 14, 1 << 16, 1 << 18, 1 << 22, 1 << 30])
-def test_cache_limit(case, limit):
-    """However small the cache, the image is complete and the same; and the limit holds, but for the smallest cache that can work."""
-    statistics = same(case, CacheLimit=limit)
-    cache = sum(size for name, size in statistics["memory"]["buffers"].items() if name.lower().startswith("cache"))
-    smallest = sum(
-        size for name, size in same(case, CacheLimit=1)["memory"]["buffers"].items() if name.lower().startswith("cache")
-    )
-    assert 0 < cache <= max(limit, smallest)
+@pytest.mark.parametrize("speculation", [1, 64])
+@pytest.mark.parametrize("share", [0, 0.01, 0.03, 0.1, 0.3, 0.7, 1, 2])
+def test_memory_budget(case, share, speculation):
+    """From the least budget that can work to one that has room for the whole volume decoded: same image, never over budget."""
+    image, isovalue, camera, _ = case
+    whole = same(case)
+    least = least_budget(image, isovalue, camera)
+    needed = beside_the_stream(whole) + 400_000  # with room for traffic with the CPU
+    budget = int(least + share * (needed - least))
+    statistics = same(case, MemoryBudget=budget, SpeculationLimit=speculation)
+    assert statistics["memory"]["budget"] == budget
+    assert beside_the_stream(statistics) <= budget
+    if share <= 0.3 or share >= 1:
+        assert ("cache_map" in statistics["memory"]["buffers"]) == (share < 1)
+    if share == 0:
+        assert "CacheEvict" in statistics["stages"]
 
 
-@pytest.mark.parametrize("threshold", [0, 8, 40, 1 << 30])
-def test_grouping_threshold(case, threshold):
-    """Rays that go through a block together find what each would find alone."""
-    stages = same(case, GroupingThreshold=threshold)["stages"]
-    assert ("IntersectPairs" in stages) == (threshold > 0)
+def test_never_over_budget(case):
+    """Not after any pass, not while the view, the isovalue and the image's size change."""
+    image, isovalue, camera, _ = case
+    budget = 3 * least_budget(image, isovalue, camera)
+    scene = Scene(image, isovalue, camera, MemoryBudget=budget, MaximumPassesPerRender=1, **CACHED)
+    for size, change in (((160, 120), 0), ((200, 150), 0.1), ((40, 30), -0.1), ((170, 130), 0)):
+        scene.window.SetSize(*size)
+        scene.isovalue = isovalue + change
+        scene.renderer.GetActiveCamera().Azimuth(50)
+        scene.renderer.ResetCameraClippingRange()
+        for _ in range(2000):
+            scene.window.Render()
+            assert beside_the_stream(scene.statistics()) <= budget
+            if scene.mapper.GetConverged():
+                break
+        assert scene.mapper.GetConverged()
+
+
+def test_too_small_a_budget_is_an_error_that_names_the_least(case):
+    image, isovalue, camera, expected = case
+    least = least_budget(image, isovalue, camera)
+    scene = Scene(image, isovalue, camera, MemoryBudget=least - 1)
+    with vtk_messages() as messages:
+        scene.window.Render()
+    assert len(messages) == 1 and str(least - 1) in messages[0] and str(least) in messages[0]
+    assert np.ptp(scene.picture().reshape(-1, 3), axis=0).max() == 0
+    scene.mapper.SetMemoryBudget(least)
+    assert scene.depth().tobytes() == expected.tobytes()
+
+
+@pytest.mark.parametrize("whole", [False, True])
+@pytest.mark.parametrize("bits", [9, 64, 100.25, 512])
+def test_stream_in_several_buffers(case, bits, whole):
+    """A stream longer than one buffer may be lies in several, wherever its blocks begin and end."""
+    image, isovalue, camera, _ = case
+    image = progiso.compress(progiso.decompress(image), bits / 64)
+    expected = Scene(image, isovalue, camera).depth()
+    stream = len(stream_of(image))
+    scene = Scene(image, isovalue, camera, LargestBuffer=max(stream // 3, 2_500_000 if whole else 600_000))
+    scene.mapper.SetDecodeWholeVolume(whole)
+    assert scene.depth().tobytes() == expected.tobytes()
+    if not whole and stream > 900_000:
+        # blocks that two buffers need are in both
+        assert scene.statistics()["memory"]["compressed"] > stream
 
 
 @pytest.mark.parametrize("speculation", [1, 64])
 @pytest.mark.parametrize("passes", [1, 2, 5])
 def test_passes_per_render(case, passes, speculation):
-    same(case, MaximumPassesPerRender=passes, SpeculationLimit=speculation)
+    same(case, MaximumPassesPerRender=passes, SpeculationLimit=speculation, **CACHED)
 
 
-@pytest.mark.parametrize("cache", [1 << 14, 1 << 17])
-def test_everything_at_once(case, cache):
-    same(case, CacheLimit=cache, SpeculationLimit=7, MaximumPassesPerRender=1)
+@pytest.mark.parametrize("share", [1.05, 1.5])
+def test_everything_at_once(case, share):
+    image, isovalue, camera, _ = case
+    budget = int(share * least_budget(image, isovalue, camera))
+    same(case, MemoryBudget=budget, SpeculationLimit=7, MaximumPassesPerRender=1, DetailedStatistics=True)
 
 
 def test_history_does_not_show(case):
     """A mapper that has seen other views, isovalues and sizes shows what a fresh one shows."""
     image, isovalue, camera, expected = case
-    scene = Scene(image, isovalue, camera, CacheLimit=1 << 17)
+    scene = Scene(image, isovalue, camera, MemoryBudget=2 * least_budget(image, isovalue, camera))
     for i in range(3):
         scene.camera = orbit(reference_volume(image), i, 3)
         scene.isovalue = isovalue + 0.05 * (i - 1)
         scene.window.SetSize(100 + 30 * i, 90)
+        scene.mapper.SetMemoryBudget(0 if i == 1 else 3_000_000)
         scene.render()
     scene.window.SetSize(160, 120)
     scene.camera, scene.isovalue = camera, isovalue
@@ -88,7 +144,7 @@ def test_history_does_not_show(case):
 
 def test_a_change_amid_the_passes_restarts(case):
     image, isovalue, camera, expected = case
-    scene = Scene(image, isovalue + 0.1, camera, MaximumPassesPerRender=1, SpeculationLimit=1)
+    scene = Scene(image, isovalue + 0.1, camera, MaximumPassesPerRender=1, SpeculationLimit=1, **CACHED)
     scene.renderer.ResetCameraClippingRange()
     scene.window.Render()
     assert not scene.mapper.GetConverged()
@@ -97,10 +153,23 @@ def test_a_change_amid_the_passes_restarts(case):
     assert scene.depth().tobytes() == expected.tobytes()
 
 
+def test_a_change_of_memory_amid_the_passes_restarts(case):
+    image, isovalue, camera, expected = case
+    scene = Scene(image, isovalue, camera, MaximumPassesPerRender=1, SpeculationLimit=1, **CACHED)
+    scene.renderer.ResetCameraClippingRange()
+    scene.window.Render()
+    assert not scene.mapper.GetConverged()
+    scene.mapper.SetMemoryBudget(least_budget(image, isovalue, camera))
+    assert scene.depth().tobytes() == expected.tobytes()
+    scene.mapper.SetMemoryBudget(0)
+    scene.mapper.DecodeWholeVolumeOn()
+    assert scene.depth().tobytes() == expected.tobytes()
+
+
 def test_cached_blocks_are_not_decoded_again(case):
     """A turn by a little decodes only what newly appears; the same view, nothing."""
     image, isovalue, camera, _ = case
-    scene = Scene(image, isovalue, camera)
+    scene = Scene(image, isovalue, camera, **CACHED)
     scene.render()
 
     def decoded():
@@ -112,12 +181,37 @@ def test_cached_blocks_are_not_decoded_again(case):
     assert decoded() < 0.25 * first
 
 
+def test_cache_grows_and_shrinks_with_the_scene():
+    """A complex view makes the cache grow; after some views that need little it is small again, and the images stay right."""
+    values = noise((150, 150, 150), 3)
+    image = progiso.compress(make_image(values), 4)
+    camera = orbit(reference_volume(image), 1, 4)
+    scene = Scene(image, 1.5, camera, (400, 300), **CACHED)
+
+    def cache():
+        return scene.statistics()["memory"]["buffers"]["cache_values"]
+
+    scene.render()
+    scene.isovalue = 3.5  # rays go deep
+    scene.render()
+    large = cache()
+    assert large > 256 * 30000
+    scene.isovalue = values.max() - 0.01
+    for _ in range(12):
+        scene.renderer.GetActiveCamera().Azimuth(1)
+        scene.render()
+    assert cache() < large / 2
+    scene.camera, scene.isovalue = camera, 1.5
+    assert scene.depth().tobytes() == Scene(image, 1.5, camera, (400, 300)).depth().tobytes()
+
+
 def test_other_input_replaces_the_cache():
     """What was decoded of one volume is never shown for another."""
     camera = Camera((60, 50, 70), (12, 12, 12))
     first, second = (progiso.compress(make_image(blobs((25, 25, 25), seed))) for seed in (3, 4))
     expected = Scene(second, 0.1, camera).depth()
-    scene = Scene(first, 0.1, camera)
-    assert scene.depth().tobytes() != expected.tobytes()
-    scene.mapper.SetInputData(second)
-    assert scene.depth().tobytes() == expected.tobytes()
+    for settings in ({}, CACHED):
+        scene = Scene(first, 0.1, camera, **settings)
+        assert scene.depth().tobytes() != expected.tobytes()
+        scene.mapper.SetInputData(second)
+        assert scene.depth().tobytes() == expected.tobytes()

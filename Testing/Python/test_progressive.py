@@ -3,7 +3,7 @@
 import numpy as np
 import progiso
 import pytest
-from scenes import Scene, orbit
+from scenes import CACHED, Scene, orbit
 from support import blobs, make_image, reference_volume
 from vtkmodules.vtkRenderingUI import vtkGenericRenderWindowInteractor
 
@@ -12,7 +12,8 @@ class Watched(Scene):
     """A scene in a window with an interactor, whose timers wait until they are fired by hand."""
 
     def __init__(self, image, **settings):
-        super().__init__(image, 0.1, orbit(reference_volume(image), 1, 4), SpeculationLimit=1, **settings)
+        camera = orbit(reference_volume(image), 1, 4)
+        super().__init__(image, 0.1, camera, SpeculationLimit=1, **CACHED, **settings)
         if self.window.IsA("vtkEGLRenderWindow"):
             pytest.skip("an EGL window is off-screen, hence always complete")
         self.window.SetOffScreenRendering(False)

@@ -6,14 +6,15 @@ import pytest
 import tolerances
 from oracle.caster import Camera
 from progiso.statistics import PASS_KEYS
-from scenes import Scene, orbit
+from scenes import CACHED, Scene, orbit
 from support import make_image, marschner_lobb, metadata, noise, reference_volume, stream_of
 
 
 @pytest.fixture(scope="module")
 def scene():
     image = progiso.compress(make_image(marschner_lobb(64)), 4)
-    scene = Scene(image, 0.5, orbit(reference_volume(image), 1, 4), (200, 150), SpeculationLimit=4)
+    camera = orbit(reference_volume(image), 1, 4)
+    scene = Scene(image, 0.5, camera, (200, 150), SpeculationLimit=4, DetailedStatistics=True, **CACHED)
     scene.image = image
     scene.rays = scene.depth()
     return scene
@@ -21,10 +22,10 @@ def scene():
 
 def test_keys(scene):
     statistics = scene.statistics()
-    assert {"passes", "total_ms", "memory", "stages", "left_out", "converged", "camera", "size", "gl"} <= set(
-        statistics
-    )
-    assert set(statistics["memory"]) == {"buffers", "total", "compressed"}
+    assert set(statistics) == {
+        *("passes", "total_ms", "memory", "stages", "left_out", "stage_ms", "converged", "camera", "size", "gl")
+    }
+    assert set(statistics["memory"]) == {"buffers", "total", "compressed", "budget"}
     assert set(statistics["camera"]) >= {"position", "focal_point", "view_up", "view_angle", "parallel"}
     assert all(set(PASS_KEYS) <= set(p) for p in statistics["passes"])
     assert statistics["size"] == [200, 150]
@@ -44,12 +45,12 @@ def test_passes_add_up(scene):
     assert active[0] >= np.isfinite(scene.rays).sum()
     for p in passes:
         assert 1 <= p["speculation"] <= 4
-        assert p["pairs"] <= p["active_rays"] * 4
-        assert p["visible_blocks"] <= p["pairs"] or p["pairs"] == 0
-        assert p["visible_blocks"] <= p["active_blocks"] <= 16**3
-        assert p["decoded_blocks"] <= p["active_blocks"]
+        assert p["visible_blocks"] <= p["pairs"]
+        assert p["visible_blocks"] <= p["active_blocks"] <= p["cached_blocks"] <= 16**3
     assert sum(p["pairs"] for p in passes) >= np.isfinite(scene.rays).sum()
-    assert sum(p["decoded_blocks"] for p in passes) >= max(p["active_blocks"] for p in passes)
+    # nothing was evicted, so what is cached in the end was decoded, each block once
+    assert sum(p["decoded_blocks"] for p in passes) == passes[-1]["cached_blocks"]
+    assert passes[0]["pairs"] == 0 and passes[0]["decoded_blocks"] > 0
     elapsed = [p["elapsed_ms"] for p in passes]
     assert elapsed == sorted(elapsed) and 0 < elapsed[0] and elapsed[-1] <= statistics["total_ms"]
 
@@ -63,6 +64,20 @@ def test_table_says_the_same(scene):
         assert [column.GetTuple1(i) for i in range(len(passes))] == pytest.approx([p[key] for p in passes])
 
 
+def test_details_are_there_when_asked_for(scene):
+    """Every stage that ran for the image has its time; without details nobody counts blocks or asks the clock."""
+    statistics = scene.statistics()
+    assert set(statistics["stage_ms"]) == set(statistics["stages"])
+    assert all(ms > 0 for stage, ms in statistics["stage_ms"].items() if stage != "BlockRanges")
+    plain = Scene(scene.image, 0.5, scene.camera, (200, 150), SpeculationLimit=4, **CACHED)
+    assert plain.depth().tobytes() == scene.rays.tobytes()
+    about = plain.statistics()
+    assert about["stage_ms"] == {}
+    assert all(p["visible_blocks"] is None and p["active_blocks"] is None for p in about["passes"])
+    assert [p["pairs"] for p in about["passes"]] == [p["pairs"] for p in statistics["passes"]]
+    assert set(statistics["memory"]["buffers"]) - set(about["memory"]["buffers"]) == {"cache_seen"}
+
+
 def test_memory_adds_up(scene):
     memory = scene.statistics()["memory"]
     assert sum(memory["buffers"].values()) == memory["total"]
@@ -71,13 +86,13 @@ def test_memory_adds_up(scene):
     assert memory["compressed"] in memory["buffers"].values()
 
 
-@pytest.mark.parametrize("speculation", [1, 64])
+@pytest.mark.parametrize("settings", [{}, CACHED, {"SpeculationLimit": 1, **CACHED}])
 @pytest.mark.parametrize("size", [(64, 48), (640, 360)])
 @pytest.mark.parametrize("shape", [(17, 18, 19), (100, 90, 110)])
-def test_memory_formula(shape, size, speculation):
+def test_memory_formula(shape, size, settings):
     """Beside payload and cache: three bytes for a block, forty for a pixel."""
     image = progiso.compress(make_image(noise(shape)), 1)
-    scene = Scene(image, 0.5, orbit(reference_volume(image), 1, 4), size, SpeculationLimit=speculation)
+    scene = Scene(image, 0.5, orbit(reference_volume(image), 1, 4), size, **settings)
     scene.render()
     check_memory(image, scene.statistics())
 
@@ -94,11 +109,71 @@ def check_memory(image, statistics):
     ), f"{rest} bytes for {blocks} blocks and {np.prod(statistics['size'])} pixels: {memory['buffers']}"
 
 
+# --- what a scene does not need is not there ---------------------------------------------------------------------------------
+
+SHAPE, SIZE = (100, 90, 110), (160, 120)
+BLOCKS, MACROCELLS, PIXELS = 25 * 23 * 28, 7 * 6 * 7, 160 * 120
+ALWAYS = {"control", "pass_statistics", "macrocells", "hits", "cache_values", "scene", "staging"}
+
+
+@pytest.fixture(scope="module")
+def volume():
+    image = progiso.compress(make_image(noise(SHAPE)), 1)
+    return image, orbit(reference_volume(image), 1, 4)
+
+
+def needs(volume, lit=True, **settings):
+    """Render; return the buffers with their sizes, and the stages."""
+    image, camera = volume
+    scene = Scene(image, 0.5, camera, SIZE, **settings)
+    scene.volume.GetProperty().SetShade(lit)
+    scene.render()
+    statistics = scene.statistics()
+    return statistics["memory"]["buffers"], set(statistics["stages"])
+
+
+def test_a_small_volume_needs_no_cache(volume):
+    """Decoded as a whole it needs no stream, no map, no waiting rays, and one pass of one stage."""
+    buffers, stages = needs(volume)
+    assert set(buffers) == ALWAYS | {"normals"}
+    assert buffers["cache_values"] == 256 * BLOCKS
+    assert buffers["macrocells"] == 136 * MACROCELLS
+    assert stages == {"BlockRanges", "PlanPass", "CastRays", "Composite"}
+
+
+def test_what_the_cache_adds(volume):
+    buffers, stages = needs(volume, **CACHED)
+    assert set(buffers) == ALWAYS | {
+        *("normals", "compressed", "rays", "cache_map", "cache_free_slots", "cache_requests")
+    }
+    assert buffers["rays"] == 12 * PIXELS
+    assert buffers["macrocells"] == 148 * MACROCELLS
+    assert "DecodeBlocks" in stages
+    # a cache with a slot for every block never evicts
+    assert ("CacheEvict" in stages) == (buffers["cache_values"] < 256 * BLOCKS)
+
+
+@pytest.mark.parametrize("settings", [{}, CACHED])
+def test_an_unlit_surface_needs_no_normals(volume, settings):
+    lit, stages = needs(volume, **settings)
+    plain, same_stages = needs(volume, lit=False, **settings)
+    assert lit["normals"] == 4 * PIXELS and "normals" not in plain
+    assert sum(lit.values()) - sum(plain.values()) >= 4 * PIXELS
+    assert same_stages == stages
+
+
+def test_speculation_takes_no_memory(volume):
+    """It has no buffer and no stage of its own: the rays look ahead."""
+    with_it, stages = needs(volume, **CACHED)
+    without, same_stages = needs(volume, SpeculationLimit=1, **CACHED)
+    assert with_it == without and stages == same_stages
+
+
 def test_nothing_to_see():
     """A volume out of sight or an isovalue out of range costs no decode."""
     image = progiso.compress(make_image(marschner_lobb(24)))
-    away = Scene(image, 0.5, Camera((100, 100, 100), (200, 200, 200)))
-    out = Scene(image, 7.0, Camera((60, 60, 60), (12, 12, 12)))
+    away = Scene(image, 0.5, Camera((100, 100, 100), (200, 200, 200)), **CACHED)
+    out = Scene(image, 7.0, Camera((60, 60, 60), (12, 12, 12)), **CACHED)
     # VTK would not even ask the mapper for what it finds out of sight.
     away.renderer.GetCullers().RemoveAllItems()
     for scene in (away, out):

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PipelinePrograms.h"
+
+namespace
+{
+// Compiles one shader into a program; the compiler's log where that fails.
+std::string AttachShader(GLuint program, GLenum type, const std::string& source)
+{
+  GLuint shader = glCreateShader(type);
+  const char* text = source.c_str();
+  glShaderSource(shader, 1, &text, nullptr);
+  glCompileShader(shader);
+  GLint compiled = 0;
+  glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+  std::string log;
+  if (!compiled)
+  {
+    log.resize(4096);
+    GLsizei length = 0;
+    glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &length, &log[0]);
+    log.resize(length);
+    log = log.empty() ? "no log" : log;
+  }
+  glAttachShader(program, shader);
+  glDeleteShader(shader);
+  return log;
+}
+}
+
+std::shared_ptr<PipelinePrograms> PipelinePrograms::OfContext(
+  const void* context, bool byExtensions)
+{
+  static std::map<const void*, std::weak_ptr<PipelinePrograms>> contexts;
+  std::shared_ptr<PipelinePrograms> programs = contexts[context].lock();
+  if (!programs)
+  {
+    programs = std::make_shared<PipelinePrograms>(byExtensions);
+    contexts[context] = programs;
+  }
+  return programs;
+}
+
+GLuint PipelinePrograms::Get(Stage stage, const std::vector<Buffer>& bound,
+  const PipelineExtent& extent, std::string& error)
+{
+  const Variant variant(stage, bound, extent.Cached, extent.Lit, extent.Detailed);
+  const auto found = this->Programs.find(variant);
+  if (found != this->Programs.end())
+  {
+    return found->second;
+  }
+  const GLuint program = this->Build(stage, bound, extent, error);
+  if (program) // else it is tried again, and told again, at the next render
+  {
+    this->Programs[variant] = program;
+  }
+  return program;
+}
+
+GLuint PipelinePrograms::Build(Stage stage, const std::vector<Buffer>& bound,
+  const PipelineExtent& extent, std::string& error) const
+{
+  const std::string name = PipelineStages()[static_cast<int>(stage)].Name;
+  const auto attach = [&](GLuint program, GLenum type, const char* suffix)
+  {
+    return AttachShader(
+      program, type, AssembleShader(name + suffix, bound, extent, this->ByExtensions));
+  };
+  const GLuint program = glCreateProgram();
+  const std::string log = stage == Stage::Composite
+    ? attach(program, GL_VERTEX_SHADER, ".vert") + attach(program, GL_FRAGMENT_SHADER, ".frag")
+    : attach(program, GL_COMPUTE_SHADER, ".comp");
+  glLinkProgram(program);
+  GLint linked = 0;
+  glGetProgramiv(program, GL_LINK_STATUS, &linked);
+  if (linked)
+  {
+    return program;
+  }
+  char text[2048] = {};
+  glGetProgramInfoLog(program, sizeof(text), nullptr, text);
+  error = "shader " + name + " does not build on this driver: " + log + text;
+  glDeleteProgram(program);
+  return 0;
+}
+
+void PipelinePrograms::Release()
+{
+  for (const auto& entry : this->Programs)
+  {
+    glDeleteProgram(entry.second);
+  }
+  this->Programs.clear();
+}

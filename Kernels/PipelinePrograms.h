@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+// The compiled stages. All mappers of a window share them: a program is compiled when the first
+// scene needs it, once.
+#ifndef PipelinePrograms_h
+#define PipelinePrograms_h
+
+#include "PipelineStages.h"
+#include "ProgIsoGL.h"
+
+#include <map>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+class PipelinePrograms
+{
+public:
+  /// The programs of a context, which is told by any address that is its own. The caller keeps them
+  /// alive; whoever holds them last calls Release() with the context current.
+  static std::shared_ptr<PipelinePrograms> OfContext(const void* context, bool byExtensions);
+
+  explicit PipelinePrograms(bool byExtensions)
+    : ByExtensions(byExtensions)
+  {
+  }
+  PipelinePrograms(const PipelinePrograms&) = delete;
+  void operator=(const PipelinePrograms&) = delete;
+
+  /// A stage's program for what it is bound to and what the scene needs; 0 and a message in `error`
+  /// where it does not build.
+  GLuint Get(Stage stage, const std::vector<Buffer>& bound, const PipelineExtent& extent,
+    std::string& error);
+  void Release();
+
+private:
+  GLuint Build(Stage stage, const std::vector<Buffer>& bound, const PipelineExtent& extent,
+    std::string& error) const;
+
+  /// stage, buffers bound, and what the scene needs: Cached, Lit, Detailed
+  using Variant = std::tuple<Stage, std::vector<Buffer>, bool, bool, bool>;
+  std::map<Variant, GLuint> Programs;
+  bool ByExtensions; ///< the context is older than 4.3 but offers what we need
+};
+
+#endif
