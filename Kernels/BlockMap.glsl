@@ -1,8 +1,9 @@
 // Where a block's values are (sections 3.4 and 3.5). With a cache: the slots stand on map pages, one for every
-// macrocell that has blocks in it; what a ray lacks it asks for, and DecodeBlocks.comp fills the requests.
-// Without, the whole volume is decoded and a block's slot is its number.
+// macrocell that has blocks in it. Without, the whole volume is decoded and a block's slot is its number.
 
-uint slots[8]; // of a block (bit 0, 1, 2 of the index: a block further in x, y, z) and what is beside it
+// Slots of a block and those beside it, x fastest, in the lower and the upper layer. No stage indexes them: what is
+// indexed by a variable does not stay in registers.
+uvec4 lowSlots, highSlots;
 
 // Statistics of this invocation.
 uint touchedSlots = 0u;
@@ -24,42 +25,47 @@ uint SlotOf(ivec3 block)
 #endif
 }
 
-// Fills `slots` for the blocks from `first` to first + reach, a component 0 or 1; returns those that are
-// missing, a bit each.
+uint SlotBeside(ivec3 first, ivec3 reach, ivec3 side)
+{
+  return all(lessThanEqual(side, reach)) ? SlotOf(first + side) : 0u;
+}
+
+// Finds the slots of the blocks from `first` to first + reach, a component 0 or 1; returns those that are missing, a
+// bit each.
 uint FindSlots(ivec3 first, ivec3 reach)
 {
-  uint missing = 0u;
-  for (int i = 0; i < 8; ++i)
-  {
-    ivec3 side = SideOffset(i);
-    slots[i] = all(lessThanEqual(side, reach)) ? SlotOf(first + side) : 0u;
-    missing |= slots[i] == NONE ? 1u << i : 0u;
-  }
-  return missing;
+  lowSlots.x = SlotBeside(first, reach, ivec3(0, 0, 0));
+  lowSlots.y = SlotBeside(first, reach, ivec3(1, 0, 0));
+  lowSlots.z = SlotBeside(first, reach, ivec3(0, 1, 0));
+  lowSlots.w = SlotBeside(first, reach, ivec3(1, 1, 0));
+  highSlots.x = SlotBeside(first, reach, ivec3(0, 0, 1));
+  highSlots.y = SlotBeside(first, reach, ivec3(1, 0, 1));
+  highSlots.z = SlotBeside(first, reach, ivec3(0, 1, 1));
+  highSlots.w = SlotBeside(first, reach, ivec3(1, 1, 1));
+  uvec4 low = uvec4(equal(lowSlots, uvec4(NONE))) << uvec4(0u, 1u, 2u, 3u);
+  uvec4 high = uvec4(equal(highSlots, uvec4(NONE))) << uvec4(4u, 5u, 6u, 7u);
+  return low.x | low.y | low.z | low.w | high.x | high.y | high.z | high.w;
 }
 
 uint SlotAt(bvec3 side)
 {
-  uint x0 = side.x ? slots[1] : slots[0];
-  uint x1 = side.x ? slots[3] : slots[2];
-  uint x2 = side.x ? slots[5] : slots[4];
-  uint x3 = side.x ? slots[7] : slots[6];
-  uint y0 = side.y ? x1 : x0;
-  uint y1 = side.y ? x3 : x2;
-  return side.z ? y1 : y0;
+  uvec4 layer = side.z ? highSlots : lowSlots;
+  uvec2 row = side.y ? layer.zw : layer.xy;
+  return side.x ? row.y : row.x;
 }
 
-#ifdef HAS_CACHE_SEEN
+#ifdef BINDING_CACHE_SEEN
 void CountBlocks(ivec3 reach, bool intersected)
 {
-  if (intersected && atomicExchange(cacheSeen[2u * slots[0]], control.PassSerial) != control.PassSerial)
+  if (intersected && atomicExchange(cacheSeen[2u * lowSlots.x], control.PassSerial) != control.PassSerial)
   {
     ++visibleBlocks;
   }
   for (int i = 0; i < 8; ++i)
   {
-    if (all(lessThanEqual(SideOffset(i), reach)) &&
-      atomicExchange(cacheSeen[2u * slots[i] + 1u], control.PassSerial) != control.PassSerial)
+    ivec3 side = SideOffset(i);
+    if (all(lessThanEqual(side, reach)) &&
+      atomicExchange(cacheSeen[2u * SlotAt(bvec3(side)) + 1u], control.PassSerial) != control.PassSerial)
     {
       ++activeBlocks;
     }
@@ -83,7 +89,7 @@ void UsePage(ivec3 coarse)
 // The blocks found last are about to be used.
 void UseBlocks(ivec3 first, ivec3 reach, bool intersected)
 {
-#ifdef HAS_CACHE_SEEN
+#ifdef BINDING_CACHE_SEEN
   CountBlocks(reach, intersected);
 #endif
 #ifdef HAS_CACHE_MAP
@@ -98,97 +104,3 @@ void UseBlocks(ivec3 first, ivec3 reach, bool intersected)
   }
 #endif
 }
-
-#ifdef HAS_CACHE_MAP
-#define STAGED 1024u
-
-shared uint stagedRequests[STAGED];
-shared uint stagedCount;
-shared uint stagedBegin;
-
-// A free page of the map for a macrocell; NONE where there is none.
-uint TakePage(uint cell)
-{
-  uint at = atomicAdd(control.TakenPages, 1u);
-  if (at >= control.FreePages)
-  {
-    return NONE;
-  }
-  uint page = mapPages[(control.FreePagesBegin + at) % scene.Cache.y].Free;
-  mapPages[page].Cell = cell;
-  mapPages[page].Stamp = control.PassSerial;
-  mapPages[page].Used = 0u;
-  return page;
-}
-
-// Takes places on the list of requests, which DecodeBlocks.comp works through in groups of 32.
-uint ReserveRequests(uint count)
-{
-  uint at = atomicAdd(control.Requests, count);
-  atomicMax(control.DecodeGroups.X, min((at + count + 31u) / 32u, MAX_GROUPS));
-  return at;
-}
-
-// What is behind the end of the list is refused, and may be asked for again.
-void ListRequest(uint at, uint block)
-{
-  if (at < scene.Cache.x)
-  {
-    cacheRequests[at] = block;
-    return;
-  }
-  ivec3 coordinates = BlockCoordinates(block);
-  uint local = LocalIndex(coordinates);
-  atomicAnd(macrocells[CoarseIndex(coordinates >> 2)].Requested[local >> 5], ~(1u << (local & 31u)));
-}
-
-// Asks for a block, unless another ray has already done so in this pass.
-void RequestBlock(ivec3 block)
-{
-  uint cell = CoarseIndex(block >> 2);
-  uint local = LocalIndex(block);
-  uint bit = 1u << (local & 31u);
-  if ((macrocells[cell].Requested[local >> 5] & bit) != 0u ||
-    (atomicOr(macrocells[cell].Requested[local >> 5], bit) & bit) != 0u)
-  {
-    return;
-  }
-  if (macrocells[cell].Page == NONE && atomicCompSwap(macrocells[cell].Page, NONE, CLAIMED) == NONE)
-  {
-    macrocells[cell].Page = TakePage(cell);
-  }
-  uint at = atomicAdd(stagedCount, 1u);
-  if (at < STAGED)
-  {
-    stagedRequests[at] = BlockIndex(block);
-  }
-  else
-  {
-    ListRequest(ReserveRequests(1u), BlockIndex(block));
-  }
-}
-
-void RequestBlocks(ivec3 first, uint missing)
-{
-  for (; missing != 0u; missing &= missing - 1u)
-  {
-    RequestBlock(first + SideOffset(findLSB(missing)));
-  }
-}
-
-// The work group's requests go to the list together.
-void FlushRequests()
-{
-  barrier();
-  uint count = min(stagedCount, STAGED);
-  if (gl_LocalInvocationIndex == 0u && count > 0u)
-  {
-    stagedBegin = ReserveRequests(count);
-  }
-  barrier();
-  for (uint i = gl_LocalInvocationIndex; i < count; i += 64u)
-  {
-    ListRequest(stagedBegin + i, stagedRequests[i]);
-  }
-}
-#endif

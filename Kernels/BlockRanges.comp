@@ -3,6 +3,8 @@
 // range of every block's 5^3 dual grid, quantised outwards to 8 + 8 bits within the range of the macrocell.
 // In: Payload or CacheValues. Out: Macrocells.
 
+#define CACHE_BY_ROWS
+
 #include "Scene.glsl"
 #include "Buffers.glsl"
 #include "Rays.glsl"
@@ -20,46 +22,51 @@ layout(local_size_x = 32) in; // LANES
 shared float samples[GRID * GRID * GRID];
 shared vec2 localRanges[64];
 
-// Sample `at` of a block, from where this invocation has it.
-float SampleOf(uint block, uint at, uint lane)
+// Keeps those samples of row y + 4 z of a block that the macrocell's dual grids reach.
+void KeepRow(ivec3 local, int row, uvec4 bits)
+{
+  ivec3 at = 4 * local + ivec3(0, row & 3, row >> 2);
+  if (at.y < GRID && at.z < GRID)
+  {
+    vec4 values = uintBitsToFloat(bits);
+    uint first = at.x + GRID * (at.y + GRID * at.z);
+    samples[first] = values.x;
+    if (at.x + 3 < GRID)
+    {
+      samples[first + 1u] = values.y;
+      samples[first + 2u] = values.z;
+      samples[first + 3u] = values.w;
+    }
+  }
+}
+
+void LoadBlock(ivec3 local, uint block)
 {
 #ifdef BINDING_PAYLOAD
-  return uintBitsToFloat(zfpColumns[ColumnIndex(at, lane)]);
+  DecodedBlock decoded = DecodeBlock(block, gl_LocalInvocationIndex);
+#define KEEP_ROW(r) KeepRow(local, r, decoded.Row[r]);
+  FOR_ROWS(KEEP_ROW)
 #else
-  return uintBitsToFloat(cacheValues[64u * block + at]);
+  for (int row = 0; row < 16; ++row)
+  {
+    KeepRow(local, row, cacheRows[16u * block + uint(row)]);
+  }
 #endif
 }
 
 // Loads the samples of 5^3 blocks from the macrocell's first one on, a block a lane.
 void LoadSamples(ivec3 firstBlock)
 {
-  uint lane = gl_LocalInvocationIndex;
-  for (uint batch = 0u; batch < 125u; batch += LANES)
+  for (uint i = gl_LocalInvocationIndex; i < 125u; i += LANES)
   {
-    uint i = batch + lane;
     ivec3 local = ivec3(i % 5u, (i / 5u) % 5u, i / 25u);
     ivec3 block = firstBlock + local;
-    if (i < 125u && all(lessThan(block, scene.Blocks.xyz)))
+    if (all(lessThan(block, scene.Blocks.xyz)))
     {
-#ifdef BINDING_PAYLOAD
-      DecodeBlock(BlockIndex(block), lane);
-#endif
-      ivec3 count = min(ivec3(4), ivec3(GRID) - 4 * local);
-      for (int z = 0; z < count.z; ++z)
-      {
-        for (int y = 0; y < count.y; ++y)
-        {
-          for (int x = 0; x < count.x; ++x)
-          {
-            ivec3 at = 4 * local + ivec3(x, y, z);
-            samples[at.x + GRID * (at.y + GRID * at.z)] =
-              SampleOf(BlockIndex(block), uint(x + 4 * y + 16 * z), lane);
-          }
-        }
-      }
+      LoadBlock(local, BlockIndex(block));
     }
-    barrier();
   }
+  barrier();
 }
 
 // Range of a block's dual grid; empty (low > high) where the block has no cells.

@@ -12,19 +12,14 @@ ivec3 CellAt(Ray ray, ivec3 block, double t)
   return entry - (1 - ray.Step) / 2 + crossed * ray.Step;
 }
 
-// The cells of a block's dual grid reach into the next block where they are the last on an axis. Does the ray
-// pass through such ones, between parameters t0 and t1? Only then is the neighbour needed (section 3.4).
-ivec3 DualGridReach(Ray ray, ivec3 block, double t0, double t1)
+float Excess(uint at)
 {
-  dvec3 last = PlanesT(ray, 4 * block + 3);
-  bvec3 forward = greaterThan(ray.Step, ivec3(0));
-  ivec3 reached = ivec3(lessThanEqual(last, dvec3(t1))) * ivec3(forward) +
-    ivec3(greaterThan(last, dvec3(t0))) * ivec3(not(forward));
-  return min(reached, scene.Blocks.xyz - 1 - block);
+  precise float value = (uintBitsToFloat(cacheValues[at]) - scene.Isovalue.x) - scene.Isovalue.y;
+  return value;
 }
 
-// Value - isovalue at the cell's corners, x fastest, where `slots` are those of its block.
-void LoadCorners(ivec3 cell, out float w[8])
+// Corners of a cell of the block whose slots were found last.
+Corners LoadCorners(ivec3 cell)
 {
   uvec3 local = uvec3(cell) & 3u;
   bvec3 last = equal(local, uvec3(3u));
@@ -32,13 +27,19 @@ void LoadCorners(ivec3 cell, out float w[8])
   uvec2 x = uvec2(local.x, next.x);
   uvec2 y = uvec2(local.y, next.y) * 4u;
   uvec2 z = uvec2(local.z, next.z) * 16u;
-  for (int i = 0; i < 8; ++i)
-  {
-    uint slot = SlotAt(bvec3((i & 1) != 0 && last.x, (i & 2) != 0 && last.y, (i & 4) != 0 && last.z));
-    uint bits = cacheValues[slot * 64u + x[i & 1] + y[i >> 1 & 1] + z[i >> 2]];
-    precise float value = (uintBitsToFloat(bits) - scene.Isovalue.x) - scene.Isovalue.y;
-    w[i] = value;
-  }
+  uvec4 lowLayer = 64u * lowSlots + z.x;
+  uvec4 highLayer = 64u * (last.z ? highSlots : lowSlots) + z.y;
+  uvec2 rows[4] = uvec2[4](lowLayer.xy, last.y ? lowLayer.zw : lowLayer.xy, highLayer.xy, last.y ? highLayer.zw : highLayer.xy);
+  Corners w;
+  w.Low.x = Excess(rows[0].x + y.x + x.x);
+  w.Low.y = Excess((last.x ? rows[0].y : rows[0].x) + y.x + x.y);
+  w.Low.z = Excess(rows[1].x + y.y + x.x);
+  w.Low.w = Excess((last.x ? rows[1].y : rows[1].x) + y.y + x.y);
+  w.High.x = Excess(rows[2].x + y.x + x.x);
+  w.High.y = Excess((last.x ? rows[2].y : rows[2].x) + y.x + x.y);
+  w.High.z = Excess(rows[3].x + y.y + x.x);
+  w.High.w = Excess((last.x ? rows[3].y : rows[3].x) + y.y + x.y);
+  return w;
 }
 
 // Coordinates in the cell's unit cube at parameter t; exact on the faces that the ray is crossing.
@@ -51,7 +52,7 @@ vec3 LocalCoordinates(Ray ray, ivec3 cell, double t, bvec3 onFace, bool leaving)
 }
 
 // First hit of the ray in the cell between parameters t0 and t1; false if there is none.
-bool IntersectCell(Ray ray, ivec3 cell, float w[8], double t0, double t1, dvec3 exits, out double t)
+bool IntersectCell(Ray ray, ivec3 cell, Corners w, double t0, double t1, dvec3 exits, out double t)
 {
   bvec3 entering = equal(PlanesT(ray, EntryPlanes(ray, cell, 1)), dvec3(t0));
   bvec3 leaving = equal(exits, dvec3(t1));
@@ -70,7 +71,7 @@ bool IntersectBlock(Ray ray, ivec3 block, double t0, double end, out double t)
   ivec3 cell = CellAt(ray, block, t0);
   for (int tested = 0; tested < 16; ++tested) // a ray crosses at most 10 cells of 4^3
   {
-    float w[8];
+    Corners w;
     dvec3 exits;
     double t1;
     bool crossed = false;
@@ -78,7 +79,7 @@ bool IntersectBlock(Ray ray, ivec3 block, double t0, double end, out double t)
     {
       exits = PlanesT(ray, ExitPlanes(ray, cell, 1));
       t1 = min(SmallestOf(exits), end);
-      LoadCorners(cell, w);
+      w = LoadCorners(cell);
       crossed = Straddle(w);
       if (crossed || t1 >= end)
       {

@@ -19,7 +19,8 @@ layout(std430, binding = BINDING_CONTROL) buffer Control
   uint Frontier;    // rays of pixels from here on, in tile order, wait: the cache has no room for them
   uint Window;      // pixels from the first live one to the frontier
   uint FirstLive;   // least tile order of a live ray
-  uint Speculation; // blocks that a ray may ask for in this pass (N_spec, section 4)
+  uint Unlit;       // hits without a normal, which stand in the same list from its end on
+  uint NextUnlit;   // of these, such as have to wait for blocks
   uint PassSerial;  // counts passes over the cache's whole life: the clock of the LRU
   uint ImageSerial; // first pass of this image
   uint PassIndex;   // passes of this image
@@ -42,8 +43,11 @@ layout(std430, binding = BINDING_CONTROL) buffer Control
   uint EvictWanted;  // units to be freed: see PlanEviction in PlanPass.comp
   uint EvictByPages; // 1: a page counts as one unit; 0: as many as it has slots
   uint Evicted;      // units of the threshold age freed so far
-  uint ControlPad[3];
+  uint ControlPad[2];
   Dispatch CastGroups;
+  Dispatch FewGroups; // where few rays are left, of CastFewRays instead
+  Dispatch NormalGroups;
+  Dispatch RequestGroups;
   Dispatch DecodeGroups;
   Dispatch EvictGroups;
   uint Ages[256]; // units on pages by their ages, in passes
@@ -82,17 +86,26 @@ layout(std430, binding = BINDING_MACROCELLS) buffer Macrocells { Macrocell macro
 #ifdef BINDING_HITS
 layout(std430, binding = BINDING_HITS) buffer Hits { uint hits[]; };
 #endif
+#ifdef BINDING_DEPTHS
+layout(std430, binding = BINDING_DEPTHS) buffer Depths { float depths[]; }; // the hits' parameters t
+#endif
 #ifdef BINDING_NORMALS
 layout(std430, binding = BINDING_NORMALS) buffer Normals { uint normals[]; };
 #endif
 #ifdef BINDING_RAYS
-// For every pixel the block that its live ray waits for; then two lists of the live rays' pixels, in turn.
+// For every pixel the block that its live ray waits for; then two lists, in turn, of the pixels of live rays, and from
+// their ends on of hits without a normal.
 layout(std430, binding = BINDING_RAYS) buffer Rays { uint rays[]; };
 #endif
 
 // ---- the block cache
 #ifdef BINDING_CACHE_VALUES
+// 64 samples a slot, x fastest; a stage that defines CACHE_BY_ROWS has them in rows of four.
+#ifdef CACHE_BY_ROWS
+layout(std430, binding = BINDING_CACHE_VALUES) buffer CacheValues { uvec4 cacheRows[]; };
+#else
 layout(std430, binding = BINDING_CACHE_VALUES) buffer CacheValues { uint cacheValues[]; };
+#endif
 #endif
 #ifdef BINDING_CACHE_MAP
 struct MapPage

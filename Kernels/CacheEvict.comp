@@ -9,9 +9,6 @@ layout(local_size_x = 64) in;
 
 shared uint oldestKept;   // pages older than this go,
 shared uint goneAtOldest; // and that many units of this very age
-shared bool goes;
-shared uint freed;
-shared uint begin;
 
 void FindThreshold()
 {
@@ -36,44 +33,36 @@ bool Goes(uint page)
   return age > oldestKept || (age == oldestKept && goneAtOldest > 0u && atomicAdd(control.Evicted, units) < goneAtOldest);
 }
 
-// One lane a slot.
 void Evict(uint page)
 {
-  uint lane = gl_LocalInvocationIndex;
-  uint slot = mapPages[page].Slots[lane];
-  uint at = slot == NONE ? 0u : atomicAdd(freed, 1u);
-  barrier();
-  if (lane == 0u)
+  uint to = control.FreeSlotsBegin + atomicAdd(control.FreeSlots, mapPages[page].Used);
+  for (uint i = 0u; i < 64u; ++i)
   {
-    begin = control.FreeSlotsBegin + atomicAdd(control.FreeSlots, freed);
-    macrocells[mapPages[page].Cell].Page = NONE;
-    mapPages[page].Cell = NONE;
-    mapPages[(control.FreePagesBegin + atomicAdd(control.FreePages, 1u)) % scene.Cache.y].Free = page;
+    uint slot = mapPages[page].Slots[i];
+    if (slot != NONE)
+    {
+      cacheFreeSlots[to % (2u * scene.Cache.x)] = slot;
+      mapPages[page].Slots[i] = NONE;
+      ++to;
+    }
   }
-  barrier();
-  if (slot != NONE)
-  {
-    cacheFreeSlots[(begin + at) % (2u * scene.Cache.x)] = slot;
-    mapPages[page].Slots[lane] = NONE;
-  }
+  macrocells[mapPages[page].Cell].Page = NONE;
+  mapPages[page].Cell = NONE;
+  mapPages[(control.FreePagesBegin + atomicAdd(control.FreePages, 1u)) % scene.Cache.y].Free = page;
 }
 
+// One lane a page.
 void main()
 {
   if (gl_LocalInvocationIndex == 0u)
   {
     FindThreshold();
   }
-  for (uint page = gl_WorkGroupID.x; page < scene.Cache.y; page += gl_NumWorkGroups.x)
+  barrier();
+  uint first = 64u * gl_WorkGroupID.x + gl_LocalInvocationIndex;
+  for (uint page = first; page < scene.Cache.y; page += 64u * gl_NumWorkGroups.x)
   {
-    barrier();
-    if (gl_LocalInvocationIndex == 0u)
-    {
-      goes = Goes(page);
-      freed = 0u;
-    }
-    barrier();
-    if (goes)
+    if (Goes(page))
     {
       Evict(page);
     }

@@ -1,8 +1,10 @@
-// A pass over the wavefront of rays (sections 3.2 to 3.7 and 4). Every ray walks the macrocell grid to the blocks
-// whose range holds the isovalue, in their order along the ray, and is intersected with them as long as they are in the
-// cache. At the first that is not it stops: asks for it, looks ahead for up to N_spec - 1 more to ask for, and goes
-// on in the next pass. So a ray tests no block behind its hit, and the first hit it finds is the nearest.
-// In: Macrocells, CacheMap, CacheValues, Rays. Out: Hits, Normals, Rays, CacheRequests, Control.
+// A pass over the wavefront of rays (sections 3.2, 3.3 and 3.7): every ray walks the macrocell grid to the blocks whose
+// range holds the isovalue, in their order along the ray, and is intersected with them as long as they are in the cache.
+// At the first that is not it waits for the next pass. So a ray tests no block behind its hit, and the first hit it
+// finds is the nearest.
+// In: Macrocells, CacheMap, CacheValues, Rays. Out: Hits, Depths, Rays, CacheMap (stamps), Control.
+
+#define GROUP 32u
 
 #include "Scene.glsl"
 #include "Buffers.glsl"
@@ -11,239 +13,146 @@
 #include "TraverseGrid.glsl"
 #include "BlockMap.glsl"
 #include "Intersection.glsl"
+#include "BlockReach.glsl"
 #include "BlockWalk.glsl"
-#ifdef HAS_NORMALS
-#include "Normals.glsl"
-#include "PackedNormal.glsl"
-#endif
+#include "LiveRays.glsl"
 
-layout(local_size_x = 64) in;
-
-shared uint groupActive;
-shared uint groupPairs;
-shared uint groupTouched;
-shared uint groupVisible;
-shared uint groupNeeded;
-
-uint pairs = 0u;
+layout(local_size_x = 32) in; // GROUP
 
 // Walks from `block` to the first hit; true where the ray has to wait for the block that it returns.
-bool FindHit(Ray ray, inout ivec3 block, inout uint key)
+bool FindHit(Ray ray, inout ivec3 block, out uint key)
 {
+  key = NO_HIT;
   GridCursor at = OutsideGrid();
-  bool waits = false;
-#ifdef HAS_CACHE_MAP
-  ivec3 stop = block;
-  uint asked = 0u;
-#endif
   while (FindActiveBlock(ray, block, at))
   {
     double entry = BlockEntry(ray, block);
     double end = BlockExit(ray, block);
     ivec3 reach = DualGridReach(ray, block, entry, end);
-    uint missing = FindSlots(block, reach);
-    if (!waits && missing == 0u)
+    if (FindSlots(block, reach) != 0u)
     {
-      UseBlocks(block, reach, true);
-      ++pairs;
-      double t;
-      if (IntersectBlock(ray, block, entry, end, t))
-      {
-        key = HitKey(ray, t);
-        return false;
-      }
+      return true;
     }
-#ifdef HAS_CACHE_MAP
-    else
+    UseBlocks(block, reach, true);
+    ++pairs;
+    double t;
+    if (IntersectBlock(ray, block, entry, end, t))
     {
-      stop = waits ? stop : block;
-      waits = true;
-      RequestBlocks(block, missing);
-      if (++asked >= control.Speculation)
-      {
-        break;
-      }
+      key = HitKey(ray, t);
+      return false;
     }
-#endif
     if (!NextBlock(ray, block))
     {
-      break;
+      return false;
     }
   }
-#ifdef HAS_CACHE_MAP
-  block = stop;
-#endif
-  return waits;
-}
-
-#ifdef HAS_NORMALS
-// True where the normal has to wait for blocks.
-bool FindNormal(Ray ray, uint pixel, uint key)
-{
-  HitPoint hit = HitOf(ray, key);
-  ivec3 first = FirstStencilBlock(hit.Cell);
-  ivec3 reach = LastStencilBlock(hit.Cell) - first;
-  uint missing = FindSlots(first, reach);
-#ifdef HAS_CACHE_MAP
-  if (missing != 0u)
-  {
-    RequestBlocks(first, missing);
-    return true;
-  }
-#endif
-  UseBlocks(first, reach, false);
-  normals[pixel] = PackNormal(ViewNormal(Gradient(hit), -normalize(EyeRayDirection(pixel))));
   return false;
 }
-#endif
 
-// True where the ray has to go on in the next pass.
-bool CastRay(uint pixel, bool fresh)
+#define DONE 0u  // has left the volume, or needs nothing more
+#define WAITS 1u // for blocks
+#define HIT 2u   // has hit the surface in this pass
+
+uint CastRay(uint pixel, bool fresh)
 {
   Ray ray = CameraRay(pixel);
   if (!(ray.Enter <= ray.Leave))
   {
-    return false;
+    return DONE;
   }
   atomicAdd(groupActive, 1u);
-  uint key = fresh ? NO_HIT : hits[pixel];
-  if (key == NO_HIT)
+#ifdef HAS_RAYS
+  ivec3 block = fresh ? FirstBlock(ray) : BlockCoordinates(rays[pixel]);
+#else
+  ivec3 block = FirstBlock(ray);
+#endif
+  uint key;
+  bool waits = FindHit(ray, block, key);
+  if (key != NO_HIT)
   {
-#ifdef HAS_RAYS
-    ivec3 block = fresh ? FirstBlock(ray) : BlockCoordinates(rays[pixel]);
-#else
-    ivec3 block = FirstBlock(ray);
-#endif
-    bool waits = FindHit(ray, block, key);
-#ifdef HAS_RAYS
-    if (waits)
-    {
-      rays[pixel] = BlockIndex(block);
-      return true;
-    }
-#endif
-    if (key == NO_HIT)
-    {
-      return false;
-    }
-    hits[pixel] = key;
+    KeepHit(ray, pixel, key);
   }
-#ifdef HAS_NORMALS
-  return FindNormal(ray, pixel, key);
-#else
-  return false;
+#ifdef HAS_RAYS
+  if (waits)
+  {
+    rays[pixel] = BlockIndex(block);
+  }
 #endif
+  return waits ? WAITS : key != NO_HIT ? HIT : DONE;
 }
 
 #ifdef HAS_RAYS
 shared uint groupLive;
-shared uint groupBegin;
+shared uint groupLiveBegin;
 shared uint groupFirst;
+shared uint groupHits;
+shared uint groupHitsBegin;
 
-// Pixel of a ray of this pass; `fresh`: it begins now.
-uint RayAt(uint index, out bool fresh)
-{
-  fresh = index >= control.Carried;
-  uint pixels = uint(scene.Image.x * scene.Image.y);
-  return fresh ? PixelInTileOrder(control.Fresh + index - control.Carried)
-               : rays[pixels * (1u + control.List) + index];
-}
-
-bool BehindFrontier(uint pixel)
-{
-  return control.Frontier < PixelsInTiles() && TileOrderOf(pixel) >= control.Frontier;
-}
-
-// The work group's live rays go to the list for the next pass together.
-void KeepRays(bool live, uint pixel)
-{
-  uint at = live ? atomicAdd(groupLive, 1u) : 0u;
-  if (live && control.Window < PixelsInTiles())
-  {
-    atomicMin(groupFirst, TileOrderOf(pixel));
-  }
-  barrier();
-  if (gl_LocalInvocationIndex == 0u && groupLive > 0u)
-  {
-    groupBegin = atomicAdd(control.NextCarried, groupLive);
-    atomicMin(control.FirstLive, groupFirst);
-  }
-  barrier();
-  if (live)
-  {
-    uint pixels = uint(scene.Image.x * scene.Image.y);
-    rays[pixels * (2u - control.List) + groupBegin + at] = pixel;
-  }
-}
-#endif
-
-void OpenGroup()
+// The work group's rays that wait go to the list for the next pass together, and so do its hits, for their normals.
+void KeepRays(uint state, uint pixel)
 {
   if (gl_LocalInvocationIndex == 0u)
   {
-    groupActive = 0u;
-    groupPairs = 0u;
-    groupTouched = 0u;
-    groupVisible = 0u;
-    groupNeeded = 0u;
-#ifdef HAS_RAYS
     groupLive = 0u;
+    groupHits = 0u;
     groupFirst = NONE;
-#endif
-#ifdef HAS_CACHE_MAP
-    stagedCount = 0u;
-#endif
   }
   barrier();
-}
-
-void CountWork()
-{
-  atomicAdd(groupPairs, pairs);
-#ifdef HAS_CACHE_MAP
-  atomicAdd(groupTouched, touchedSlots);
-#endif
-#ifdef HAS_CACHE_SEEN
-  atomicAdd(groupVisible, visibleBlocks);
-  atomicAdd(groupNeeded, activeBlocks);
-#endif
-  barrier();
-  if (gl_LocalInvocationIndex == 0u && groupActive > 0u)
+  uint at = 0u;
+  if (state == WAITS)
   {
-    atomicAdd(control.ActiveRays, groupActive);
-    atomicAdd(control.Pairs, groupPairs);
-#ifdef HAS_CACHE_MAP
-    atomicAdd(control.TouchedSlots, groupTouched);
-#endif
-#ifdef HAS_CACHE_SEEN
-    atomicAdd(control.VisibleBlocks, groupVisible);
-    atomicAdd(control.ActiveBlocks, groupNeeded);
-#endif
+    at = atomicAdd(groupLive, 1u);
+    atomicMin(groupFirst, TileOrderOf(pixel));
   }
+#ifdef HAS_NORMALS
+  at = state == HIT ? atomicAdd(groupHits, 1u) : at;
+#endif
+  barrier();
+  if (gl_LocalInvocationIndex == 0u && groupLive > 0u)
+  {
+    groupLiveBegin = ReserveRays(groupLive, groupFirst);
+  }
+#ifdef HAS_NORMALS
+  if (gl_LocalInvocationIndex == 0u && groupHits > 0u)
+  {
+    groupHitsBegin = ReserveUnlit(groupHits);
+  }
+#endif
+  barrier();
+  if (state == WAITS)
+  {
+    rays[NextList(groupLiveBegin + at)] = pixel;
+  }
+#ifdef HAS_NORMALS
+  if (state == HIT)
+  {
+    rays[NextList(FromEnd(groupHitsBegin + at))] = pixel;
+  }
+#endif
 }
+#endif
 
 void main()
 {
   OpenGroup();
-  uint index = 64u * FoldedGroup() + gl_LocalInvocationIndex;
+  barrier();
+  uint index = GROUP * FoldedGroup() + gl_LocalInvocationIndex;
   uint pixel = NONE;
-  bool live = false;
+  uint state = DONE;
   if (index < control.Rays)
   {
+    bool fresh = index >= control.Carried;
 #ifdef HAS_RAYS
-    bool fresh;
-    pixel = RayAt(index, fresh);
-    live = !fresh && BehindFrontier(pixel) || pixel != NONE && CastRay(pixel, fresh);
+    pixel = fresh ? PixelInTileOrder(control.Fresh + index - control.Carried) : rays[ThisList(index)];
+    bool waits = !fresh && BehindFrontier(pixel);
 #else
     pixel = PixelInTileOrder(index);
-    live = pixel != NONE && CastRay(pixel, true);
+    bool waits = false;
 #endif
+    state = waits ? WAITS : pixel != NONE ? CastRay(pixel, fresh) : DONE;
   }
   CountWork();
 #ifdef HAS_RAYS
-  KeepRays(live, pixel);
-#endif
-#ifdef HAS_CACHE_MAP
-  FlushRequests();
+  KeepRays(state, pixel);
 #endif
 }

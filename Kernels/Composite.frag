@@ -1,5 +1,5 @@
 // The partial or complete image goes to the window, lit, with the depth that opaque geometry is tested against.
-// In: Hits, Normals.
+// In: Hits, Depths, Normals.
 
 #include "Scene.glsl"
 #include "Buffers.glsl"
@@ -62,7 +62,7 @@ void main()
   {
     discard;
   }
-  float t = float(HitT(CameraRay(pixel), hits[pixel]));
+  float t = depths[pixel];
   float z = (scene.DepthTerms.x + t * scene.DepthTerms.y) / (scene.DepthTerms.z + t * scene.DepthTerms.w);
   gl_FragDepth = clamp(0.5 * z + 0.5, 0.0, 1.0);
   fragmentColor = vec4(clamp(Shade(pixel, t), 0.0, 1.0), 1.0);

@@ -2,6 +2,8 @@
 // or, where there is no cache, of the whole volume.
 // In: CacheRequests, CacheFreeSlots, Payload. Out: CacheValues, CacheMap, Macrocells, Control.
 
+#define CACHE_BY_ROWS
+
 #include "Scene.glsl"
 #include "Buffers.glsl"
 #include "Grid.glsl"
@@ -9,8 +11,6 @@
 #include "ZFPDecode.glsl"
 
 layout(local_size_x = 32) in;
-
-shared uint groupSlots[ZFP_LANES];
 
 #ifdef HAS_CACHE_MAP
 uint NumberOfBlocks()
@@ -64,34 +64,27 @@ uint BlockAt(uint i)
 #endif
 }
 
+void StoreBlock(uint slot, DecodedBlock decoded)
+{
+#define STORE_ROW(r) cacheRows[16u * slot + uint(r)] = decoded.Row[r];
+  FOR_ROWS(STORE_ROW)
+}
+
 void main()
 {
   uint lane = gl_LocalInvocationIndex;
   uint number = NumberOfBlocks();
-  uint stride = gl_NumWorkGroups.x * ZFP_LANES;
-  for (uint first = gl_WorkGroupID.x * ZFP_LANES; first < number; first += stride)
+  uint stride = gl_NumWorkGroups.x * gl_NumWorkGroups.y * ZFP_LANES;
+  for (uint i = FoldedGroup() * ZFP_LANES + lane; i < number; i += stride)
   {
-    uint i = first + lane;
-    uint slot = NONE;
-    if (i < number && InSegment(BlockAt(i)))
+    uint block = BlockAt(i);
+    if (InSegment(block))
     {
-      slot = SlotFor(i, BlockAt(i));
-    }
-    if (slot != NONE)
-    {
-      DecodeBlock(BlockAt(i), lane);
-    }
-    groupSlots[lane] = slot;
-    barrier();
-    // the group writes block after block, in consecutive words
-    for (uint j = lane; j < ZFP_LANES * 64u; j += ZFP_LANES)
-    {
-      uint column = j >> 6;
-      if (groupSlots[column] != NONE)
+      uint slot = SlotFor(i, block);
+      if (slot != NONE)
       {
-        cacheValues[groupSlots[column] * 64u + (j & 63u)] = zfpColumns[ColumnIndex(j & 63u, column)];
+        StoreBlock(slot, DecodeBlock(block, lane));
       }
     }
-    barrier();
   }
 }

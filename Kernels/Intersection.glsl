@@ -12,20 +12,35 @@ float Lerp(float a, float b, float s)
   return value;
 }
 
-// Bernstein coefficients along the segment u0 - u1 of the cell's unit cube; w: corner values.
-vec4 CubicAlong(float w[8], vec3 u0, vec3 u1)
+vec2 Lerp(vec2 a, vec2 b, float s)
 {
-  float x0[4], x1[4];
-  for (int i = 0; i < 4; ++i)
-  {
-    x0[i] = Lerp(w[2 * i], w[2 * i + 1], u0.x);
-    x1[i] = Lerp(w[2 * i], w[2 * i + 1], u1.x);
-  }
-  // value at (x of end a, y of end b) on the lower and upper z face
-  vec2 f00 = vec2(Lerp(x0[0], x0[1], u0.y), Lerp(x0[2], x0[3], u0.y));
-  vec2 f10 = vec2(Lerp(x1[0], x1[1], u0.y), Lerp(x1[2], x1[3], u0.y));
-  vec2 f01 = vec2(Lerp(x0[0], x0[1], u1.y), Lerp(x0[2], x0[3], u1.y));
-  vec2 f11 = vec2(Lerp(x1[0], x1[1], u1.y), Lerp(x1[2], x1[3], u1.y));
+  precise vec2 value = a * (1.0 - s) + b * s;
+  return value;
+}
+
+vec4 Lerp(vec4 a, vec4 b, float s)
+{
+  precise vec4 value = a * (1.0 - s) + b * s;
+  return value;
+}
+
+// Value - isovalue at a cell's corners: of its lower and its upper z face, x fastest.
+struct Corners
+{
+  vec4 Low, High;
+};
+
+// Bernstein coefficients along the segment u0 - u1 of the cell's unit cube.
+vec4 CubicAlong(Corners w, vec3 u0, vec3 u1)
+{
+  // on the four edges in x direction, y fastest, at either end's x
+  vec4 x0 = Lerp(vec4(w.Low.xz, w.High.xz), vec4(w.Low.yw, w.High.yw), u0.x);
+  vec4 x1 = Lerp(vec4(w.Low.xz, w.High.xz), vec4(w.Low.yw, w.High.yw), u1.x);
+  // at (x of end a, y of end b) on the lower and upper z face
+  vec2 f00 = Lerp(x0.xz, x0.yw, u0.y);
+  vec2 f10 = Lerp(x1.xz, x1.yw, u0.y);
+  vec2 f01 = Lerp(x0.xz, x0.yw, u1.y);
+  vec2 f11 = Lerp(x1.xz, x1.yw, u1.y);
   precise float b1 = Lerp(f10.x, f10.y, u0.z) + Lerp(f01.x, f01.y, u0.z) + Lerp(f00.x, f00.y, u1.z);
   precise float b2 = Lerp(f11.x, f11.y, u0.z) + Lerp(f10.x, f10.y, u1.z) + Lerp(f01.x, f01.y, u1.z);
   return vec4(Lerp(f00.x, f00.y, u0.z), b1 / 3.0, b2 / 3.0, Lerp(f11.x, f11.y, u1.z));
@@ -88,7 +103,7 @@ float RefineRoot(vec4 b, float low, float high, bool lowInside)
     }
     precise float next = s - value / (3.0 * CubicSlope(b, s));
     next = next > low && next < high ? next : 0.5 * (low + high);
-    if (abs(next - s) < 5e-8 || high - low < 5e-8)
+    if (abs(next - s) <= 1.2e-7 || high - low <= 1.2e-7) // a float's resolution there
     {
       return next;
     }
@@ -106,28 +121,18 @@ float FirstTransition(vec4 b)
     return -1.0; // the cubic stays within the hull of its coefficients
   }
   vec2 turn = Extrema(b);
-  float ends[4] = float[4](0.0, turn.x, turn.y, 1.0);
   bool first = inside.x;
-  for (int i = 1; i < 4; ++i)
-  {
-    bool last = ends[i] < 1.0 ? Inside(CubicValue(b, ends[i])) : inside.w;
-    if (last != first)
-    {
-      return RefineRoot(b, ends[i - 1], ends[i], first);
-    }
-  }
-  return -1.0;
+  bool second = turn.x < 1.0 ? Inside(CubicValue(b, turn.x)) : inside.w;
+  bool third = turn.y < 1.0 ? Inside(CubicValue(b, turn.y)) : inside.w;
+  vec2 bracket = second != first ? vec2(0.0, turn.x) : third != first ? turn : vec2(turn.y, 1.0);
+  bool none = second == first && third == first && inside.w == first;
+  return none ? -1.0 : RefineRoot(b, bracket.x, bracket.y, first);
 }
 
 // Are there corners on both sides?
-bool Straddle(float w[8])
+bool Straddle(Corners w)
 {
-  bool someInside = false;
-  bool allInside = true;
-  for (int i = 0; i < 8; ++i)
-  {
-    someInside = someInside || Inside(w[i]);
-    allInside = allInside && Inside(w[i]);
-  }
-  return someInside && !allInside;
+  bvec4 low = greaterThanEqual(w.Low, vec4(0.0));
+  bvec4 high = greaterThanEqual(w.High, vec4(0.0));
+  return (any(low) || any(high)) && !(all(low) && all(high));
 }

@@ -30,10 +30,13 @@ ivec3 LastStencilBlock(ivec3 cell)
 
 // For the four planes of samples from one before the cell to one behind it, on each axis: do they lie in the
 // further block, and what do they add to the index within it?
-bvec4 furtherX, furtherY, furtherZ;
-uvec4 withinX, withinY, withinZ;
+struct Stencil
+{
+  bvec4 FurtherX, FurtherY, FurtherZ;
+  uvec4 WithinX, WithinY, WithinZ;
+};
 
-void PlaceStencil(ivec3 cell)
+Stencil PlaceStencil(ivec3 cell)
 {
   ivec4 planes = ivec4(-1, 0, 1, 2);
   ivec3 last = scene.Samples.xyz - 1;
@@ -41,44 +44,53 @@ void PlaceStencil(ivec3 cell)
   ivec4 x = clamp(cell.x + planes, ivec4(0), ivec4(last.x));
   ivec4 y = clamp(cell.y + planes, ivec4(0), ivec4(last.y));
   ivec4 z = clamp(cell.z + planes, ivec4(0), ivec4(last.z));
-  furtherX = notEqual(x >> 2, ivec4(first.x));
-  furtherY = notEqual(y >> 2, ivec4(first.y));
-  furtherZ = notEqual(z >> 2, ivec4(first.z));
-  withinX = uvec4(x & 3);
-  withinY = uvec4(y & 3) * 4u;
-  withinZ = uvec4(z & 3) * 16u;
+  Stencil at;
+  at.FurtherX = notEqual(x >> 2, ivec4(first.x));
+  at.FurtherY = notEqual(y >> 2, ivec4(first.y));
+  at.FurtherZ = notEqual(z >> 2, ivec4(first.z));
+  at.WithinX = uvec4(x & 3);
+  at.WithinY = uvec4(y & 3) * 4u;
+  at.WithinZ = uvec4(z & 3) * 16u;
+  return at;
 }
 
-// Sample on planes (i, j, k), 0 … 3 each; the cell's own are 1 and 2.
-float Sample(int i, int j, int k)
+float SampleAt(bool x, bool y, bool z, uint within)
 {
-  uint slot = SlotAt(bvec3(furtherX[i], furtherY[j], furtherZ[k]));
-  return uintBitsToFloat(cacheValues[slot * 64u + withinX[i] + withinY[j] + withinZ[k]]);
+  uint index = 64u * SlotAt(bvec3(x, y, z)) + within;
+  return uintBitsToFloat(cacheValues[index]);
 }
 
-// Central differences at the cell's corners, interpolated.
+// A sample by its planes on x, y and z: a … d of the four.
+#define SAMPLE(i, j, k) SampleAt(at.FurtherX.i, at.FurtherY.j, at.FurtherZ.k, at.WithinX.i + at.WithinY.j + at.WithinZ.k)
+
+// Central differences at the cell's corners, interpolated. Planes y and z of the stencil are the cell's own.
 vec3 Gradient(HitPoint hit)
 {
-  PlaceStencil(hit.Cell);
-  float corners[8];
-  for (int n = 0; n < 8; ++n)
-  {
-    corners[n] = Sample(1 + (n & 1), 1 + ((n >> 1) & 1), 1 + (n >> 2));
-  }
-  vec3 gradient = vec3(0.0);
-  for (int n = 0; n < 8; ++n)
-  {
-    ivec3 side = SideOffset(n);
-    ivec3 own = 1 + side;
-    ivec3 outer = 3 * side;
-    vec3 beyond =
-      vec3(Sample(outer.x, own.y, own.z), Sample(own.x, outer.y, own.z), Sample(own.x, own.y, outer.z));
-    vec3 across = vec3(corners[n ^ 1], corners[n ^ 2], corners[n ^ 4]);
-    vec3 difference = (beyond - across) * vec3(2 * side - 1);
-    vec3 weight = mix(1.0 - hit.Local, hit.Local, vec3(side));
-    gradient += weight.x * weight.y * weight.z * difference;
-  }
-  return gradient;
+  Stencil at = PlaceStencil(hit.Cell);
+  // at the corners, x fastest; then across them to the outer planes of each axis, the axis' side the slowest
+  vec4 low = vec4(SAMPLE(y, y, y), SAMPLE(z, y, y), SAMPLE(y, z, y), SAMPLE(z, z, y));
+  vec4 high = vec4(SAMPLE(y, y, z), SAMPLE(z, y, z), SAMPLE(y, z, z), SAMPLE(z, z, z));
+  vec4 beforeX = vec4(SAMPLE(x, y, y), SAMPLE(x, z, y), SAMPLE(x, y, z), SAMPLE(x, z, z));
+  vec4 behindX = vec4(SAMPLE(w, y, y), SAMPLE(w, z, y), SAMPLE(w, y, z), SAMPLE(w, z, z));
+  vec4 beforeY = vec4(SAMPLE(y, x, y), SAMPLE(z, x, y), SAMPLE(y, x, z), SAMPLE(z, x, z));
+  vec4 behindY = vec4(SAMPLE(y, w, y), SAMPLE(z, w, y), SAMPLE(y, w, z), SAMPLE(z, w, z));
+  vec4 beforeZ = vec4(SAMPLE(y, y, x), SAMPLE(z, y, x), SAMPLE(y, z, x), SAMPLE(z, z, x));
+  vec4 behindZ = vec4(SAMPLE(y, y, w), SAMPLE(z, y, w), SAMPLE(y, z, w), SAMPLE(z, z, w));
+  // differences on the four edges in the axis' direction, at their near and their far ends
+  vec4 nearX = vec4(low.yw, high.yw) - beforeX;
+  vec4 farX = behindX - vec4(low.xz, high.xz);
+  vec4 nearY = vec4(low.zw, high.zw) - beforeY;
+  vec4 farY = behindY - vec4(low.xy, high.xy);
+  vec4 nearZ = high - beforeZ;
+  vec4 farZ = behindZ - low;
+  vec3 u = hit.Local;
+  vec4 onX = mix(nearX, farX, u.x);
+  vec4 onY = mix(nearY, farY, u.y);
+  vec4 onZ = mix(nearZ, farZ, u.z);
+  vec2 xz = mix(onX.xz, onX.yw, u.y);
+  vec2 yz = mix(onY.xz, onY.yw, u.x);
+  vec2 zy = mix(onZ.xz, onZ.yw, u.x);
+  return vec3(mix(xz.x, xz.y, u.z), mix(yz.x, yz.y, u.z), mix(zy.x, zy.y, u.y));
 }
 
 // Scaled so that neither tiny nor huge gradients under- or overflow; towards the viewer where there is none.

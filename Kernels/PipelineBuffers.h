@@ -15,6 +15,7 @@ enum class Buffer
   Payload,
   Macrocells,
   Hits,
+  Depths,
   Normals,
   Rays,
   CacheValues,
@@ -75,13 +76,13 @@ struct ControlBlock
 {
   std::uint32_t Rays, Carried, NextCarried, List;
   std::uint32_t Fresh, Frontier, Window, FirstLive;
-  std::uint32_t Speculation, PassSerial, ImageSerial, PassIndex;
-  std::uint32_t NewImage, ActiveRays, Pairs, Requests;
-  std::uint32_t Refused, VisibleBlocks, ActiveBlocks, TouchedSlots;
-  std::uint32_t FreeSlotsBegin, FreeSlots, ReturnedSlots, FreePagesBegin;
-  std::uint32_t FreePages, TakenPages, EvictWanted, EvictByPages;
-  std::uint32_t Evicted, Pad[3];
-  DispatchArguments CastGroups, DecodeGroups, EvictGroups;
+  std::uint32_t Unlit, NextUnlit, PassSerial, ImageSerial;
+  std::uint32_t PassIndex, NewImage, ActiveRays, Pairs;
+  std::uint32_t Requests, Refused, VisibleBlocks, ActiveBlocks;
+  std::uint32_t TouchedSlots, FreeSlotsBegin, FreeSlots, ReturnedSlots;
+  std::uint32_t FreePagesBegin, FreePages, TakenPages, EvictWanted;
+  std::uint32_t EvictByPages, Evicted, Pad[2];
+  DispatchArguments CastGroups, FewGroups, NormalGroups, RequestGroups, DecodeGroups, EvictGroups;
   std::uint32_t Ages[256];
 };
 

@@ -161,6 +161,7 @@ private:
   std::int64_t LargestAllowed = 0;
   std::int64_t LargestBuffer = 0;
   std::int64_t DeviceMemory = 0;
+  bool OffersSparse = false; ///< buffers that are committed page by page
   bool CountsErrors = false;
   int GLErrors = 0;
   std::set<Stage> StagesRun;

@@ -10,14 +10,17 @@ const std::vector<StageInfo>& PipelineStages()
   using B = Buffer;
   // clang-format off
   static const std::vector<StageInfo> stages = {
-    { Stage::BlockRanges,  "BlockRanges",  { B::Macrocells, B::Payload, B::CacheValues } },
-    { Stage::PlanPass,     "PlanPass",     { B::Control, B::PassStatistics } },
-    { Stage::CacheReset,   "CacheReset",   { B::Control, B::Macrocells, B::CacheMap, B::CacheFreeSlots } },
-    { Stage::CacheAges,    "CacheAges",    { B::Control, B::CacheMap } },
-    { Stage::CacheEvict,   "CacheEvict",   { B::Control, B::Macrocells, B::CacheMap, B::CacheFreeSlots } },
-    { Stage::CastRays,     "CastRays",     { B::Control, B::Macrocells, B::CacheMap, B::CacheValues, B::CacheRequests, B::Hits, B::Normals, B::Rays, B::CacheSeen } },
-    { Stage::DecodeBlocks, "DecodeBlocks", { B::Control, B::Payload, B::Macrocells, B::CacheMap, B::CacheFreeSlots, B::CacheRequests, B::CacheValues } },
-    { Stage::Composite,    "Composite",    { B::Hits, B::Normals } },
+    { Stage::BlockRanges,   "BlockRanges",   { B::Macrocells, B::Payload, B::CacheValues } },
+    { Stage::PlanPass,      "PlanPass",      { B::Control, B::PassStatistics } },
+    { Stage::CacheReset,    "CacheReset",    { B::Control, B::Macrocells, B::CacheMap, B::CacheFreeSlots } },
+    { Stage::CacheAges,     "CacheAges",     { B::Control, B::CacheMap } },
+    { Stage::CacheEvict,    "CacheEvict",    { B::Control, B::Macrocells, B::CacheMap, B::CacheFreeSlots } },
+    { Stage::CastRays,      "CastRays",      { B::Control, B::Macrocells, B::CacheMap, B::CacheValues, B::Hits, B::Depths, B::Rays, B::CacheSeen } },
+    { Stage::CastFewRays,   "CastFewRays",   { B::Control, B::Macrocells, B::CacheMap, B::CacheValues, B::Hits, B::Depths, B::Rays, B::CacheSeen } },
+    { Stage::FindNormals,   "FindNormals",   { B::Control, B::Macrocells, B::CacheMap, B::CacheValues, B::CacheRequests, B::Hits, B::Normals, B::Rays } },
+    { Stage::RequestBlocks, "RequestBlocks", { B::Control, B::Macrocells, B::CacheMap, B::CacheRequests, B::Rays } },
+    { Stage::DecodeBlocks,  "DecodeBlocks",  { B::Control, B::Payload, B::Macrocells, B::CacheMap, B::CacheFreeSlots, B::CacheRequests, B::CacheValues } },
+    { Stage::Composite,     "Composite",     { B::Hits, B::Depths, B::Normals } },
   };
   // clang-format on
   return stages;

@@ -18,6 +18,9 @@ enum class Stage
   CacheAges,
   CacheEvict,
   CastRays,
+  CastFewRays,
+  FindNormals,
+  RequestBlocks,
   DecodeBlocks,
   Composite,
   NumberOfStages
@@ -28,8 +31,7 @@ struct StageInfo
 {
   Stage Id;
   const char* Name;            ///< also the name of its GLSL file
-  std::vector<Buffer> Buffers; ///< in the order of their bindings; at most 8 (OpenGL 4.3's
-                               ///< guarantee) but for those of detailed statistics
+  std::vector<Buffer> Buffers; ///< in the order of their bindings; at most 8, OpenGL 4.3's guarantee
 };
 
 /// The table itself, in the order of the enumeration.

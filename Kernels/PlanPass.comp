@@ -1,5 +1,5 @@
 // Between two passes, by a single invocation: closes the record of the one that has ended and plans the next. The
-// CPU decides none of it. N_spec = min(limit, floor(w h / N_act)) (section 4).
+// CPU decides none of it.
 // In: Control. Out: Control, PassStatistics.
 
 #include "Scene.glsl"
@@ -8,6 +8,8 @@
 
 #define PASS_RECORDS 64u
 #define LEAST_WINDOW 64u // pixels; the smallest cache has room for all that their rays can need at once
+#define CAST_GROUP 32u   // rays that a work group of CastRays takes
+#define NORMALS_GROUP 64u
 
 layout(local_size_x = 1) in;
 
@@ -23,6 +25,7 @@ void OpenImage()
   control.ImageSerial = control.PassSerial + 1u;
   control.Carried = 0u;
   control.NextCarried = 0u;
+  control.NextUnlit = 0u;
   control.Fresh = 0u;
   control.FirstLive = 0u;
   control.Window = PixelsInTiles();
@@ -56,19 +59,19 @@ void ClosePass()
   control.Fresh += control.Rays - control.Carried;
   PassRecord record;
   record.ActiveRays = control.ActiveRays;
-  record.Speculation = control.Speculation;
+  record.Speculation = Speculation(control.NextCarried);
   record.Pairs = control.Pairs;
   record.VisibleBlocks = control.VisibleBlocks;
   record.ActiveBlocks = control.ActiveBlocks;
   record.DecodedBlocks = 0u;
   record.CachedBlocks = uint(scene.Blocks.w);
-  record.RemainingRays = control.NextCarried + min(PixelsInTiles() - control.Fresh, Pixels());
+  record.RemainingRays = control.NextCarried + control.NextUnlit + min(PixelsInTiles() - control.Fresh, Pixels());
   record.RefusedBlocks = 0u;
   record.TouchedSlots = 0u;
 #ifdef HAS_CACHE_MAP
   CloseCache(record);
 #endif
-  if (control.Rays > 0u)
+  if (control.Rays + control.Unlit > 0u)
   {
     passRecords[control.PassIndex % PASS_RECORDS] = record;
     ++control.PassIndex;
@@ -102,8 +105,10 @@ void PlanEviction()
   bool fewSlots = !allSlots && control.FreeSlots < enoughSlots;
   bool fewPages = !allPages && control.FreePages < enoughPages;
   control.EvictByPages = fewPages ? 1u : 0u;
-  control.EvictWanted = fewPages ? enoughPages - control.FreePages : enoughSlots - control.FreeSlots;
-  control.EvictGroups.X = fewSlots || fewPages ? clamp(pages / 64u, 1u, 4096u) : 0u;
+  // more than is wanted now, so that not every pass evicts
+  control.EvictWanted =
+    fewPages ? min(2u * enoughPages, pages) - control.FreePages : min(2u * enoughSlots, slots) - control.FreeSlots;
+  control.EvictGroups.X = fewSlots || fewPages ? clamp((pages + 63u) / 64u, 1u, 4096u) : 0u;
   control.Evicted = 0u;
   for (uint i = 0u; (fewSlots || fewPages) && i < 256u; ++i)
   {
@@ -116,14 +121,37 @@ void PlanRays()
 {
   control.Carried = control.NextCarried;
   control.NextCarried = 0u;
+  control.Unlit = control.NextUnlit;
+  control.NextUnlit = 0u;
   control.List ^= 1u;
   uint fresh = control.Frontier > control.Fresh ? control.Frontier - control.Fresh : 0u;
   control.Rays = control.Carried + fresh;
-  bool narrow = control.Frontier < PixelsInTiles();
-  control.Speculation = narrow ? 1u : clamp(Pixels() / max(control.Rays, 1u), 1u, scene.Cache.z);
-  uint groups = (control.Rays + 63u) / 64u;
-  control.CastGroups.X = min(groups, MAX_GROUPS);
-  control.CastGroups.Y = (groups + MAX_GROUPS - 1u) / MAX_GROUPS;
+}
+
+uvec2 Folded(uint groups)
+{
+  return uvec2(min(groups, MAX_GROUPS), (groups + MAX_GROUPS - 1u) / MAX_GROUPS);
+}
+
+// Where there are so few rays that each can have a work group, it gets one.
+void PlanDispatches()
+{
+  bool carried = control.Rays == control.Carried;
+  bool few = carried && scene.Policy.x > 0u && control.Rays <= Pixels() / scene.Policy.x;
+  uvec2 groups = few ? Folded(control.Rays) : Folded((control.Rays + CAST_GROUP - 1u) / CAST_GROUP);
+  control.CastGroups.X = few ? 0u : groups.x;
+  control.CastGroups.Y = groups.y;
+  control.FewGroups.X = few ? groups.x : 0u;
+  control.FewGroups.Y = groups.y;
+#ifdef HAS_RAYS
+  control.NormalGroups.X = min((control.Unlit + NORMALS_GROUP - 1u) / NORMALS_GROUP, MAX_GROUPS); // hits add to it
+#else
+  groups = Folded((PixelsInTiles() + NORMALS_GROUP - 1u) / NORMALS_GROUP);
+  control.NormalGroups.X = control.Rays == 0u ? 0u : groups.x;
+  control.NormalGroups.Y = groups.y;
+#endif
+  control.RequestGroups.X = 0u;
+  control.DecodeGroups.X = 0u;
 }
 
 void ResetCounters()
@@ -136,7 +164,6 @@ void ResetCounters()
   control.ActiveBlocks = 0u;
   control.ReturnedSlots = 0u;
   control.TakenPages = 0u;
-  control.DecodeGroups.X = 0u;
 }
 
 void main()
@@ -156,5 +183,6 @@ void main()
   control.Frontier = PixelsInTiles();
 #endif
   PlanRays();
+  PlanDispatches();
   ResetCounters();
 }

@@ -16,6 +16,8 @@ constexpr std::int64_t FirstSlots = 16384;
 constexpr int PassesAhead = 3;       // submitted before the CPU knows whether they are needed
 constexpr int PatienceWithNone = 64; // passes that get nowhere before we give up
 constexpr std::size_t RecentImages = 8;
+constexpr std::uint32_t FewRays = 32; // as many pixels a ray, or more: each gets a work group
+constexpr std::uint32_t PixelsPerBlockAhead = 4;
 
 std::int64_t DivideUp(std::int64_t a, std::int64_t b)
 {
@@ -41,7 +43,8 @@ bool ProgressivePipeline::Initialize(const void* context)
   }
   ControlBlock control = {};
   for (DispatchArguments* groups :
-    { &control.CastGroups, &control.DecodeGroups, &control.EvictGroups })
+    { &control.CastGroups, &control.FewGroups, &control.NormalGroups, &control.RequestGroups,
+      &control.DecodeGroups, &control.EvictGroups })
   {
     *groups = { 0, 1, 1, 0 };
   }
@@ -305,6 +308,9 @@ void ProgressivePipeline::FillInScene(const SceneBlock& scene)
   std::copy(own.CoarseCells, own.CoarseCells + 4, this->Scene.CoarseCells);
   std::copy(own.Cache, own.Cache + 4, this->Scene.Cache);
   this->Scene.Cache[2] = static_cast<std::uint32_t>(this->Settings.SpeculationLimit);
+  // a software renderer has no lanes to keep busy, and its work groups cost much
+  this->Scene.Policy[0] = this->Gpu.IsSoftware() ? 0 : FewRays;
+  this->Scene.Policy[1] = PixelsPerBlockAhead;
 }
 
 bool ProgressivePipeline::SetScene(const SceneBlock& scene, bool newImage)
@@ -419,6 +425,15 @@ void ProgressivePipeline::RunPass()
   this->Gpu.DispatchIndirect(Stage::CastRays, offsetof(ControlBlock, CastGroups));
   if (this->Extent.Cached)
   {
+    this->Gpu.DispatchIndirect(Stage::CastFewRays, offsetof(ControlBlock, FewGroups));
+  }
+  if (this->Extent.Lit)
+  {
+    this->Gpu.DispatchIndirect(Stage::FindNormals, offsetof(ControlBlock, NormalGroups));
+  }
+  if (this->Extent.Cached)
+  {
+    this->Gpu.DispatchIndirect(Stage::RequestBlocks, offsetof(ControlBlock, RequestGroups));
     this->Gpu.DispatchIndirect(Stage::DecodeBlocks, offsetof(ControlBlock, DecodeGroups));
   }
   this->Gpu.Dispatch(Stage::PlanPass, 1);

@@ -103,6 +103,13 @@ uint TileOrderOf(uint pixel)
   return 64u * ((y >> 3) * Tiles(scene.Image.x) + (x >> 3)) + 8u * (y & 7u) + (x & 7u);
 }
 
+// Blocks that each of so many rays may ask for (N_spec, section 4).
+uint Speculation(uint rays)
+{
+  uint pixels = uint(scene.Image.x * scene.Image.y);
+  return clamp(pixels / (scene.Policy.y * max(rays, 1u)), 1u, scene.Cache.z);
+}
+
 // ---- hit keys: unsigned integers in the order of t
 uint HitKey(Ray ray, double t)
 {

@@ -28,6 +28,7 @@ layout(std140, binding = 0) uniform Scene
   ivec4 CoarseCells; // macrocells of 4^3 blocks per axis; w: their number
   ivec4 Image;       // width and height of the viewport, its origin in the window
   uvec4 Cache;       // slots, pages of the block map, speculation limit, 1 where it cannot grow
+  uvec4 Policy;      // few rays: as many pixels a ray; pixels that a ray has for each block it looks ahead
   vec4 Isovalue;     // the isovalue as a sum of two floats
   mat4 NormalMatrix; // index-space gradient to view-space normal (3x3)
   vec4 DepthTerms; // clip-space z and w as functions of t: z = x + y t, w = z + w t

@@ -27,6 +27,7 @@ struct SceneBlock
   std::int32_t CoarseCells[4] = {};
   std::int32_t Image[4] = {};
   std::uint32_t Cache[4] = {};
+  std::uint32_t Policy[4] = {};
   float Isovalue[4] = {};
   // what only its look depends on: a change needs no new rays
   float NormalMatrix[16] = {};
@@ -37,6 +38,6 @@ struct SceneBlock
   SceneLight Lights[MaximumLights] = {};
 };
 static_assert(
-  sizeof(SceneBlock) == 13 * 32 + 6 * 16 + 64 + 4 * 16 + 16 * 32, "std140 layout of Scene.glsl");
+  sizeof(SceneBlock) == 13 * 32 + 7 * 16 + 64 + 4 * 16 + 16 * 32, "std140 layout of Scene.glsl");
 
 #endif

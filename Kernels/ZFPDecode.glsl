@@ -1,92 +1,173 @@
-// Decoder of one 4^3 float block of a fixed-rate ZFP stream, bit for bit as libzfp 1.0 does it
-// (template/decode.c, decode3.c, codecf.c). One lane decodes one block, in its own column of shared
-// memory; columns are skewed so that a group can also read one block's 64 values without conflicts.
+// Decoder of one 4^3 float block of a fixed-rate ZFP stream, bit for bit as libzfp 1.0 does it (template/decode.c,
+// decode3.c, codecf.c). One lane decodes one block. Bit planes come one after the other, hence lie in shared memory, a
+// column a lane; all else stays in registers, for which nothing is indexed by a variable.
 
 #define ZFP_LANES 32u
 #define ZFP_EXPONENT_BITS 8u
 #define ZFP_EXPONENT_BIAS 127
 #define ZFP_NEGABINARY 0xAAAAAAAAu
 
-shared uint zfpColumns[64u * ZFP_LANES];
+shared uint zfpPlanes[64u * ZFP_LANES];
 
-// Position of coefficient i of lane's block.
-uint ColumnIndex(uint i, uint lane)
+// Plane k of the first 32 coefficients; that of the other 32 is 32 rows below.
+uint PlaneIndex(uint k, uint lane)
 {
-  return i * ZFP_LANES + (lane ^ (i & (ZFP_LANES - 1u)));
+  return k * ZFP_LANES + lane;
 }
 
-// Coefficients in order of increasing sequency (perm_3), as positions x + 4 y + 16 z.
-const uint ZFP_ORDER[64] = uint[64](0u, 1u, 4u, 16u, 20u, 17u, 5u, 2u, 8u, 32u, 21u, 6u, 18u, 24u, 9u,
-  33u, 36u, 3u, 12u, 48u, 22u, 25u, 37u, 40u, 34u, 10u, 7u, 19u, 28u, 13u, 49u, 52u, 41u, 38u, 26u, 23u,
-  29u, 53u, 11u, 35u, 44u, 14u, 50u, 56u, 42u, 27u, 39u, 45u, 30u, 54u, 57u, 60u, 51u, 15u, 43u, 46u,
-  58u, 61u, 55u, 31u, 62u, 59u, 47u, 63u);
-
-// Length of the run of zeros at the cursor, up to and without the next one; at most `limit` <= 63 bits
-// are looked at, and what was looked at is skipped.
-uint TakeZeros(inout BitCursor bits, inout uint budget, uint limit)
+// What follows the verbatim bits of a plane: a zero, and the plane ends; or a one, a run of zeros and the one that ends
+// it, which is implied for the last coefficient. `n`: coefficients that are significant so far.
+bool TakeRun(inout BitCursor bits, inout uint budget, inout uint n, inout uint low, inout uint high)
 {
-  uint run = 0u;
-  while (limit > 0u)
+  uint window = NextBits(bits);
+  if ((window & 1u) == 0u)
   {
-    uint window = NextBits(bits);
-    uint zeros = window == 0u ? 32u : uint(findLSB(window));
-    bool found = zeros < limit && zeros < 32u;
-    zeros = min(zeros, limit);
-    uint used = zeros + (found ? 1u : 0u);
-    SkipBits(bits, used);
-    budget -= used;
-    run += zeros;
-    limit = found ? 0u : limit - zeros;
+    SkipBits(bits, 1u);
+    --budget;
+    return false;
   }
-  return run;
-}
-
-// Adds bit k to the coefficients, from `first` on, whose bit is set in `plane`.
-void DepositPlane(uint plane, uint first, uint k, uint lane)
-{
-  for (; plane != 0u; plane &= plane - 1u)
+  uint limit = min(budget - 1u, 63u - n);
+  uint zeros = uint(findLSB((window >> 1) | 0x80000000u));
+  uint used = 1u;
+  if (zeros == 31u && limit > 31u) // longer than the window
   {
-    uint i = first + uint(findLSB(plane));
-    zfpColumns[ColumnIndex(ZFP_ORDER[i], lane)] |= 1u << k;
+    SkipBits(bits, 32u);
+    budget -= 32u;
+    n += 31u;
+    limit -= 31u;
+    window = NextBits(bits);
+    zeros = window == 0u ? 32u : uint(findLSB(window));
+    used = 0u;
   }
+  used += zeros < limit ? zeros + 1u : limit;
+  n += min(zeros, limit);
+  SkipBits(bits, used);
+  budget -= used;
+  low |= n < 32u ? 1u << n : 0u;
+  high |= n < 32u ? 0u : 1u << (n - 32u);
+  ++n;
+  return true;
 }
 
-// Embedded coding: bit planes from the most significant one, each a verbatim part of n bits and a
-// run-length coded remainder, until the block's budget of bits is spent.
+// Embedded coding: bit planes from the most significant one, each a verbatim part of n bits and a run-length coded
+// remainder, until the block's budget of bits is spent.
 void DecodePlanes(inout BitCursor bits, uint budget, uint lane)
 {
   uint n = 0u;
-  for (uint k = 32u; k-- > 0u && budget > 0u;)
+  for (uint k = 32u; k-- > 0u;)
   {
     uint m = min(n, budget);
     budget -= m;
     uint low = TakeBits(bits, min(m, 32u));
     uint high = m > 32u ? TakeBits(bits, m - 32u) : 0u;
-    while (budget > 0u && n < 64u)
+    while (budget > 0u && n < 64u && TakeRun(bits, budget, n, low, high))
     {
-      --budget;
-      if (TakeBits(bits, 1u) == 0u)
-      {
-        break; // no further one in this plane
-      }
-      n += TakeZeros(bits, budget, min(budget, 63u - n)); // the last coefficient's one is implied
-      low |= n < 32u ? 1u << n : 0u;
-      high |= n < 32u ? 0u : 1u << (n - 32u);
-      ++n;
     }
-    DepositPlane(low, 0u, k, lane);
-    DepositPlane(high, 32u, k, lane);
+    zfpPlanes[PlaneIndex(k, lane)] = low;
+    zfpPlanes[PlaneIndex(32u + k, lane)] = high;
   }
 }
 
-// Inverse of the lifted decorrelating transform along one line of four.
-void InverseLift(uint first, uint stride, uint lane)
+// 32 words of 32 bits, four a vector.
+struct BitMatrix
 {
-  uint ix = ColumnIndex(first, lane);
-  uint iy = ColumnIndex(first + stride, lane);
-  uint iz = ColumnIndex(first + 2u * stride, lane);
-  uint iw = ColumnIndex(first + 3u * stride, lane);
-  int x = int(zfpColumns[ix]), y = int(zfpColumns[iy]), z = int(zfpColumns[iz]), w = int(zfpColumns[iw]);
+  uvec4 Word[8];
+};
+
+uvec4 LoadPlanes(uint k, uint lane)
+{
+  return uvec4(zfpPlanes[PlaneIndex(k, lane)], zfpPlanes[PlaneIndex(k + 1u, lane)], zfpPlanes[PlaneIndex(k + 2u, lane)],
+    zfpPlanes[PlaneIndex(k + 3u, lane)]);
+}
+
+void SwapBits(inout uvec4 a, inout uvec4 b, uint shift, uint mask)
+{
+  uvec4 t = ((a >> shift) ^ b) & mask;
+  a ^= t << shift;
+  b ^= t;
+}
+
+// Bits (x, y) and (z, w) of a vector, and its halves.
+void SwapBitsWithin(inout uvec4 a)
+{
+  uvec2 t = ((a.xy >> 2) ^ a.zw) & 0x33333333u;
+  a = uvec4(a.xy ^ t << 2, a.zw ^ t);
+  t = ((a.xz >> 1) ^ a.yw) & 0x55555555u;
+  a ^= uvec4(t.x << 1, t.x, t.y << 1, t.y);
+}
+
+// Coefficients from bit planes: a matrix of 32 x 32 bits is transposed, by halves.
+BitMatrix TransposePlanes(uint first, uint lane)
+{
+  BitMatrix m;
+  m.Word[0] = LoadPlanes(first, lane);
+  m.Word[1] = LoadPlanes(first + 4u, lane);
+  m.Word[2] = LoadPlanes(first + 8u, lane);
+  m.Word[3] = LoadPlanes(first + 12u, lane);
+  m.Word[4] = LoadPlanes(first + 16u, lane);
+  m.Word[5] = LoadPlanes(first + 20u, lane);
+  m.Word[6] = LoadPlanes(first + 24u, lane);
+  m.Word[7] = LoadPlanes(first + 28u, lane);
+  SwapBits(m.Word[0], m.Word[4], 16u, 0x0000FFFFu);
+  SwapBits(m.Word[1], m.Word[5], 16u, 0x0000FFFFu);
+  SwapBits(m.Word[2], m.Word[6], 16u, 0x0000FFFFu);
+  SwapBits(m.Word[3], m.Word[7], 16u, 0x0000FFFFu);
+  SwapBits(m.Word[0], m.Word[2], 8u, 0x00FF00FFu);
+  SwapBits(m.Word[1], m.Word[3], 8u, 0x00FF00FFu);
+  SwapBits(m.Word[4], m.Word[6], 8u, 0x00FF00FFu);
+  SwapBits(m.Word[5], m.Word[7], 8u, 0x00FF00FFu);
+  SwapBits(m.Word[0], m.Word[1], 4u, 0x0F0F0F0Fu);
+  SwapBits(m.Word[2], m.Word[3], 4u, 0x0F0F0F0Fu);
+  SwapBits(m.Word[4], m.Word[5], 4u, 0x0F0F0F0Fu);
+  SwapBits(m.Word[6], m.Word[7], 4u, 0x0F0F0F0Fu);
+  SwapBitsWithin(m.Word[0]);
+  SwapBitsWithin(m.Word[1]);
+  SwapBitsWithin(m.Word[2]);
+  SwapBitsWithin(m.Word[3]);
+  SwapBitsWithin(m.Word[4]);
+  SwapBitsWithin(m.Word[5]);
+  SwapBitsWithin(m.Word[6]);
+  SwapBitsWithin(m.Word[7]);
+  return m;
+}
+
+// A block's coefficients, then its samples: rows in x direction, row y + 4 z.
+struct IntegerBlock
+{
+  ivec4 Row[16];
+};
+
+ivec4 FromNegabinary(uvec4 bits)
+{
+  return ivec4((bits ^ ZFP_NEGABINARY) - ZFP_NEGABINARY);
+}
+
+// From the order of increasing sequency (perm_3) to that of the grid.
+IntegerBlock Reorder(BitMatrix low, BitMatrix high)
+{
+  IntegerBlock block;
+  block.Row[0] = FromNegabinary(uvec4(low.Word[0].x, low.Word[0].y, low.Word[1].w, low.Word[4].y));
+  block.Row[1] = FromNegabinary(uvec4(low.Word[0].z, low.Word[1].z, low.Word[2].w, low.Word[6].z));
+  block.Row[2] = FromNegabinary(uvec4(low.Word[2].x, low.Word[3].z, low.Word[6].y, high.Word[1].z));
+  block.Row[3] = FromNegabinary(uvec4(low.Word[4].z, low.Word[7].y, high.Word[2].y, high.Word[5].y));
+  block.Row[4] = FromNegabinary(uvec4(low.Word[0].w, low.Word[1].y, low.Word[3].x, low.Word[6].w));
+  block.Row[5] = FromNegabinary(uvec4(low.Word[1].x, low.Word[2].z, low.Word[5].x, high.Word[0].w));
+  block.Row[6] = FromNegabinary(uvec4(low.Word[3].y, low.Word[5].y, high.Word[0].z, high.Word[3].y));
+  block.Row[7] = FromNegabinary(uvec4(low.Word[7].x, high.Word[1].x, high.Word[4].x, high.Word[6].w));
+  block.Row[8] = FromNegabinary(uvec4(low.Word[2].y, low.Word[3].w, low.Word[6].x, high.Word[1].w));
+  block.Row[9] = FromNegabinary(uvec4(low.Word[4].x, low.Word[5].z, high.Word[0].y, high.Word[3].z));
+  block.Row[10] = FromNegabinary(uvec4(low.Word[5].w, high.Word[0].x, high.Word[3].x, high.Word[5].z));
+  block.Row[11] = FromNegabinary(uvec4(high.Word[2].x, high.Word[3].w, high.Word[5].w, high.Word[7].z));
+  block.Row[12] = FromNegabinary(uvec4(low.Word[4].w, low.Word[7].z, high.Word[2].z, high.Word[5].x));
+  block.Row[13] = FromNegabinary(uvec4(low.Word[7].w, high.Word[1].y, high.Word[4].y, high.Word[6].z));
+  block.Row[14] = FromNegabinary(uvec4(high.Word[2].w, high.Word[4].z, high.Word[6].x, high.Word[7].y));
+  block.Row[15] = FromNegabinary(uvec4(high.Word[4].w, high.Word[6].y, high.Word[7].x, high.Word[7].w));
+  return block;
+}
+
+// Inverse of the lifted decorrelating transform, along four lines of four at once.
+void InverseLift(inout ivec4 x, inout ivec4 y, inout ivec4 z, inout ivec4 w)
+{
   y += w >> 1;
   w -= y >> 1;
   y += w;
@@ -101,10 +182,37 @@ void InverseLift(uint first, uint stride, uint lane)
   w += x;
   x <<= 1;
   x -= w;
-  zfpColumns[ix] = uint(x);
-  zfpColumns[iy] = uint(y);
-  zfpColumns[iz] = uint(z);
-  zfpColumns[iw] = uint(w);
+}
+
+// Along the four rows of a layer.
+void InverseLiftRows(inout ivec4 a, inout ivec4 b, inout ivec4 c, inout ivec4 d)
+{
+  ivec4 x = ivec4(a.x, b.x, c.x, d.x);
+  ivec4 y = ivec4(a.y, b.y, c.y, d.y);
+  ivec4 z = ivec4(a.z, b.z, c.z, d.z);
+  ivec4 w = ivec4(a.w, b.w, c.w, d.w);
+  InverseLift(x, y, z, w);
+  a = ivec4(x.x, y.x, z.x, w.x);
+  b = ivec4(x.y, y.y, z.y, w.y);
+  c = ivec4(x.z, y.z, z.z, w.z);
+  d = ivec4(x.w, y.w, z.w, w.w);
+}
+
+// Along z, y and x, as libzfp does it.
+void InverseTransform(inout IntegerBlock b)
+{
+  InverseLift(b.Row[0], b.Row[4], b.Row[8], b.Row[12]);
+  InverseLift(b.Row[1], b.Row[5], b.Row[9], b.Row[13]);
+  InverseLift(b.Row[2], b.Row[6], b.Row[10], b.Row[14]);
+  InverseLift(b.Row[3], b.Row[7], b.Row[11], b.Row[15]);
+  InverseLift(b.Row[0], b.Row[1], b.Row[2], b.Row[3]);
+  InverseLift(b.Row[4], b.Row[5], b.Row[6], b.Row[7]);
+  InverseLift(b.Row[8], b.Row[9], b.Row[10], b.Row[11]);
+  InverseLift(b.Row[12], b.Row[13], b.Row[14], b.Row[15]);
+  InverseLiftRows(b.Row[0], b.Row[1], b.Row[2], b.Row[3]);
+  InverseLiftRows(b.Row[4], b.Row[5], b.Row[6], b.Row[7]);
+  InverseLiftRows(b.Row[8], b.Row[9], b.Row[10], b.Row[11]);
+  InverseLiftRows(b.Row[12], b.Row[13], b.Row[14], b.Row[15]);
 }
 
 // The float i * 2^exponent as bits, exact also where it or the scale is subnormal: GPUs may flush those.
@@ -131,40 +239,35 @@ uint Dequantize(int i, int exponent)
   return (bits & 0x80000000u) | (shift < 24 ? magnitude >> shift : 0u);
 }
 
-// Decodes `block` into lane's column, as float bits at position x + 4 y + 16 z.
-void DecodeBlock(uint block, uint lane)
+uvec4 DequantizeRow(ivec4 row, int exponent)
 {
-  for (uint i = 0u; i < 64u; ++i)
-  {
-    zfpColumns[ColumnIndex(i, lane)] = 0u;
-  }
+  return uvec4(Dequantize(row.x, exponent), Dequantize(row.y, exponent), Dequantize(row.z, exponent),
+    Dequantize(row.w, exponent));
+}
+
+// A decoded block: the bits of its floats, row y + 4 z of four.
+struct DecodedBlock
+{
+  uvec4 Row[16];
+};
+
+#define FOR_ROWS(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7) DO(8) DO(9) DO(10) DO(11) DO(12) DO(13) DO(14) DO(15)
+
+DecodedBlock DecodeBlock(uint block, uint lane)
+{
+  DecodedBlock decoded;
   BitCursor bits = OpenBlock(block);
   if (TakeBits(bits, 1u) == 0u)
   {
-    return; // a block of zeros
+#define ZERO_ROW(r) decoded.Row[r] = uvec4(0u);
+    FOR_ROWS(ZERO_ROW)
+    return decoded;
   }
   int exponent = int(TakeBits(bits, ZFP_EXPONENT_BITS)) - ZFP_EXPONENT_BIAS - 30;
   DecodePlanes(bits, uint(scene.Samples.w) - 1u - ZFP_EXPONENT_BITS, lane);
-  for (uint i = 0u; i < 64u; ++i)
-  {
-    uint at = ColumnIndex(i, lane);
-    zfpColumns[at] = (zfpColumns[at] ^ ZFP_NEGABINARY) - ZFP_NEGABINARY;
-  }
-  for (uint i = 0u; i < 16u; ++i)
-  {
-    InverseLift(i, 16u, lane); // along z
-  }
-  for (uint i = 0u; i < 16u; ++i)
-  {
-    InverseLift((i & 3u) + 16u * (i >> 2), 4u, lane); // along y
-  }
-  for (uint i = 0u; i < 16u; ++i)
-  {
-    InverseLift(4u * i, 1u, lane); // along x
-  }
-  for (uint i = 0u; i < 64u; ++i)
-  {
-    uint at = ColumnIndex(i, lane);
-    zfpColumns[at] = Dequantize(int(zfpColumns[at]), exponent);
-  }
+  IntegerBlock integers = Reorder(TransposePlanes(0u, lane), TransposePlanes(32u, lane));
+  InverseTransform(integers);
+#define DEQUANTIZE_ROW(r) decoded.Row[r] = DequantizeRow(integers.Row[r], exponent);
+  FOR_ROWS(DEQUANTIZE_ROW)
+  return decoded;
 }

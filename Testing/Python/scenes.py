@@ -29,11 +29,13 @@ class Scene:
     camera : oracle.caster.Camera
     size : (int, int)
     user_matrix : 4x4 array
+    lit : bool
+        whether light falls on the surface.
     settings
         of the mapper: ``SpeculationLimit=1`` calls ``SetSpeculationLimit(1)``.
     """
 
-    def __init__(self, image, isovalue, camera, size=(160, 120), user_matrix=None, **settings):
+    def __init__(self, image, isovalue, camera, size=(160, 120), user_matrix=None, lit=False, **settings):
         self.mapper = vtkProgressiveIsosurfaceMapper()
         self.mapper.SetInputData(image)
         for name, value in settings.items():
@@ -44,6 +46,7 @@ class Scene:
             matrix = vtkMatrix4x4()
             matrix.DeepCopy(np.asarray(user_matrix, float).ravel())
             self.volume.SetUserMatrix(matrix)
+        self.volume.GetProperty().SetShade(lit)
         self.isovalue = isovalue
         self.renderer = vtkRenderer()
         self.renderer.SetBackground(0.2, 0.3, 0.4)
@@ -111,8 +114,8 @@ class Scene:
 
 
 def least_budget(image, isovalue, camera, size=(160, 120)):
-    """Return the least memory budget that a scene can work with, as the error says that one byte is too little."""
-    scene = Scene(image, isovalue, camera, size, MemoryBudget=1)
+    """Return the least memory budget that a lit scene can work with, as the error says that one byte is too little."""
+    scene = Scene(image, isovalue, camera, size, lit=True, MemoryBudget=1)
     with vtk_messages() as messages:
         scene.window.Render()
     return int(re.search(r"at least (\d+) bytes", "".join(messages))[1])

@@ -1,5 +1,7 @@
 """How the work is divided must not show: depth images agree in every byte."""
 
+import collections
+
 import numpy as np
 import progiso
 import pytest
@@ -15,27 +17,32 @@ FIELDS = {
 }
 
 
+Case = collections.namedtuple("Case", "image isovalue camera depth picture")
+
+
 @pytest.fixture(scope="module", params=FIELDS)
 def case(request):
-    """A field, an isovalue, a camera, and the depth image of one pass over the decoded volume."""
+    """A field, an isovalue, a camera, and depth and picture of one pass over the decoded volume."""
     field, isovalue = FIELDS[request.param]
     image = progiso.compress(make_image(field()), 8)
     camera = orbit(reference_volume(image), 2, 5)
-    scene = Scene(image, isovalue, camera)
+    scene = Scene(image, isovalue, camera, lit=True)
     depth = scene.depth()
     assert np.isfinite(depth).mean() > 0.05
     assert len(scene.statistics()["passes"]) == 1
-    return image, isovalue, camera, depth
+    return Case(image, isovalue, camera, depth, scene.picture())
 
 
 def same(case, **settings):
-    image, isovalue, camera, expected = case
-    scene = Scene(image, isovalue, camera, **settings)
+    """Render with other settings; depth and picture must be the same. Return the statistics."""
+    image, isovalue, camera, expected, picture = case
+    scene = Scene(image, isovalue, camera, lit=True, **settings)
     depth = scene.depth()
     different = np.argwhere(depth.view(np.uint32) != expected.view(np.uint32))
     assert (
         len(different) == 0
     ), f"{len(different)} pixels, first {different[0]}: {depth[tuple(different[0])]}, not {expected[tuple(different[0])]}"
+    assert scene.picture().tobytes() == picture.tobytes()
     return scene.statistics()
 
 
@@ -54,7 +61,7 @@ def test_speculation(case, limit):
 @pytest.mark.parametrize("share", [0, 0.01, 0.03, 0.1, 0.3, 0.7, 1, 2])
 def test_memory_budget(case, share, speculation):
     """From the least budget that can work to one that has room for the whole volume decoded: same image, never over budget."""
-    image, isovalue, camera, _ = case
+    image, isovalue, camera, _, _ = case
     whole = same(case)
     least = least_budget(image, isovalue, camera)
     needed = beside_the_stream(whole) + 400_000  # with room for traffic with the CPU
@@ -70,9 +77,9 @@ def test_memory_budget(case, share, speculation):
 
 def test_never_over_budget(case):
     """Not after any pass, not while the view, the isovalue and the image's size change."""
-    image, isovalue, camera, _ = case
+    image, isovalue, camera, _, _ = case
     budget = 3 * least_budget(image, isovalue, camera)
-    scene = Scene(image, isovalue, camera, MemoryBudget=budget, MaximumPassesPerRender=1, **CACHED)
+    scene = Scene(image, isovalue, camera, lit=True, MemoryBudget=budget, MaximumPassesPerRender=1, **CACHED)
     for size, change in (((160, 120), 0), ((200, 150), 0.1), ((40, 30), -0.1), ((170, 130), 0)):
         scene.window.SetSize(*size)
         scene.isovalue = isovalue + change
@@ -87,9 +94,9 @@ def test_never_over_budget(case):
 
 
 def test_too_small_a_budget_is_an_error_that_names_the_least(case):
-    image, isovalue, camera, expected = case
+    image, isovalue, camera, expected, _ = case
     least = least_budget(image, isovalue, camera)
-    scene = Scene(image, isovalue, camera, MemoryBudget=least - 1)
+    scene = Scene(image, isovalue, camera, lit=True, MemoryBudget=least - 1)
     with vtk_messages() as messages:
         scene.window.Render()
     assert len(messages) == 1 and str(least - 1) in messages[0] and str(least) in messages[0]
@@ -102,7 +109,7 @@ def test_too_small_a_budget_is_an_error_that_names_the_least(case):
 @pytest.mark.parametrize("bits", [9, 64, 100.25, 512])
 def test_stream_in_several_buffers(case, bits, whole):
     """A stream longer than one buffer may be lies in several, wherever its blocks begin and end."""
-    image, isovalue, camera, _ = case
+    image, isovalue, camera, _, _ = case
     image = progiso.compress(progiso.decompress(image), bits / 64)
     expected = Scene(image, isovalue, camera).depth()
     stream = len(stream_of(image))
@@ -122,14 +129,14 @@ def test_passes_per_render(case, passes, speculation):
 
 @pytest.mark.parametrize("share", [1.05, 1.5])
 def test_everything_at_once(case, share):
-    image, isovalue, camera, _ = case
+    image, isovalue, camera, _, _ = case
     budget = int(share * least_budget(image, isovalue, camera))
     same(case, MemoryBudget=budget, SpeculationLimit=7, MaximumPassesPerRender=1, DetailedStatistics=True)
 
 
 def test_history_does_not_show(case):
     """A mapper that has seen other views, isovalues and sizes shows what a fresh one shows."""
-    image, isovalue, camera, expected = case
+    image, isovalue, camera, expected, _ = case
     scene = Scene(image, isovalue, camera, MemoryBudget=2 * least_budget(image, isovalue, camera))
     for i in range(3):
         scene.camera = orbit(reference_volume(image), i, 3)
@@ -143,7 +150,7 @@ def test_history_does_not_show(case):
 
 
 def test_a_change_amid_the_passes_restarts(case):
-    image, isovalue, camera, expected = case
+    image, isovalue, camera, expected, _ = case
     scene = Scene(image, isovalue + 0.1, camera, MaximumPassesPerRender=1, SpeculationLimit=1, **CACHED)
     scene.renderer.ResetCameraClippingRange()
     scene.window.Render()
@@ -154,7 +161,7 @@ def test_a_change_amid_the_passes_restarts(case):
 
 
 def test_a_change_of_memory_amid_the_passes_restarts(case):
-    image, isovalue, camera, expected = case
+    image, isovalue, camera, expected, _ = case
     scene = Scene(image, isovalue, camera, MaximumPassesPerRender=1, SpeculationLimit=1, **CACHED)
     scene.renderer.ResetCameraClippingRange()
     scene.window.Render()
@@ -168,7 +175,7 @@ def test_a_change_of_memory_amid_the_passes_restarts(case):
 
 def test_cached_blocks_are_not_decoded_again(case):
     """A turn by a little decodes only what newly appears; the same view, nothing."""
-    image, isovalue, camera, _ = case
+    image, isovalue, camera, _, _ = case
     scene = Scene(image, isovalue, camera, **CACHED)
     scene.render()
 
@@ -183,26 +190,27 @@ def test_cached_blocks_are_not_decoded_again(case):
 
 def test_cache_grows_and_shrinks_with_the_scene():
     """A complex view makes the cache grow; after some views that need little it is small again, and the images stay right."""
-    values = noise((150, 150, 150), 3)
+    values = noise((180, 180, 180), 3)
     image = progiso.compress(make_image(values), 4)
     camera = orbit(reference_volume(image), 1, 4)
-    scene = Scene(image, 1.5, camera, (400, 300), **CACHED)
+    scene = Scene(image, values.max() - 0.01, camera, (400, 300), **CACHED)
 
     def cache():
         return scene.statistics()["memory"]["buffers"]["cache_values"]
 
     scene.render()
-    scene.isovalue = 3.5  # rays go deep
+    small = cache()
+    scene.isovalue = 2.7
     scene.render()
     large = cache()
-    assert large > 256 * 30000
+    assert large > 1.5 * small
     scene.isovalue = values.max() - 0.01
     for _ in range(12):
         scene.renderer.GetActiveCamera().Azimuth(1)
         scene.render()
     assert cache() < large / 2
-    scene.camera, scene.isovalue = camera, 1.5
-    assert scene.depth().tobytes() == Scene(image, 1.5, camera, (400, 300)).depth().tobytes()
+    scene.camera, scene.isovalue = camera, 2.7
+    assert scene.depth().tobytes() == Scene(image, 2.7, camera, (400, 300)).depth().tobytes()
 
 
 def test_other_input_replaces_the_cache():

@@ -1,0 +1,113 @@
+// The rays of a pass, and those that go on to the next.
+
+shared uint groupActive;
+shared uint groupPairs;
+shared uint groupTouched;
+shared uint groupVisible;
+shared uint groupNeeded;
+
+uint pairs = 0u; // ray-block pairs that this invocation has intersected
+
+void OpenGroup()
+{
+  if (gl_LocalInvocationIndex == 0u)
+  {
+    groupActive = 0u;
+    groupPairs = 0u;
+    groupTouched = 0u;
+    groupVisible = 0u;
+    groupNeeded = 0u;
+  }
+}
+
+void CountWork()
+{
+  atomicAdd(groupPairs, pairs);
+#ifdef HAS_CACHE_MAP
+  atomicAdd(groupTouched, touchedSlots);
+#endif
+#ifdef BINDING_CACHE_SEEN
+  atomicAdd(groupVisible, visibleBlocks);
+  atomicAdd(groupNeeded, activeBlocks);
+#endif
+  barrier();
+  if (gl_LocalInvocationIndex == 0u && groupActive > 0u)
+  {
+    atomicAdd(control.ActiveRays, groupActive);
+    atomicAdd(control.Pairs, groupPairs);
+#ifdef HAS_CACHE_MAP
+    atomicAdd(control.TouchedSlots, groupTouched);
+#endif
+#ifdef BINDING_CACHE_SEEN
+    atomicAdd(control.VisibleBlocks, groupVisible);
+    atomicAdd(control.ActiveBlocks, groupNeeded);
+#endif
+  }
+}
+
+#ifdef HAS_RAYS
+uint ImagePixels()
+{
+  return uint(scene.Image.x * scene.Image.y);
+}
+
+// Element of the list of this pass, and of the one that is made for the next.
+uint ThisList(uint index)
+{
+  return ImagePixels() * (1u + control.List) + index;
+}
+
+uint NextList(uint index)
+{
+  return ImagePixels() * (2u - control.List) + index;
+}
+
+bool BehindFrontier(uint pixel)
+{
+  return control.Frontier < PixelsInTiles() && TileOrderOf(pixel) >= control.Frontier;
+}
+
+void NoteLive(uint order)
+{
+  if (control.Window < PixelsInTiles())
+  {
+    atomicMin(control.FirstLive, order);
+  }
+}
+
+// Takes places for rays of which `first` is the least tile order.
+uint ReserveRays(uint count, uint first)
+{
+  NoteLive(first);
+  uint at = atomicAdd(control.NextCarried, count);
+  // enough groups of RequestBlocks for whatever number of rays it will be, and what they look ahead
+  uint rays = at + count;
+  uint groups = max((rays + 63u) / 64u, min((rays + 3u) / 4u, ImagePixels() / 1024u + 1u));
+  atomicMax(control.RequestGroups.X, min(groups, MAX_GROUPS));
+  return at;
+}
+
+#ifdef HAS_NORMALS
+// Takes places for hits without a normal.
+uint ReserveUnlit(uint count)
+{
+  uint at = atomicAdd(control.Unlit, count);
+  atomicMax(control.NormalGroups.X, min((at + count + 63u) / 64u, MAX_GROUPS));
+  return at;
+}
+
+// Place of such a hit, from the end of a list on.
+uint FromEnd(uint index)
+{
+  return ImagePixels() - 1u - index;
+}
+#endif
+#endif
+
+#ifdef BINDING_DEPTHS
+void KeepHit(Ray ray, uint pixel, uint key)
+{
+  hits[pixel] = key;
+  depths[pixel] = float(HitT(ray, key));
+}
+#endif
