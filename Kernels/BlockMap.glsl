@@ -1,10 +1,6 @@
 // Where a block's values are (sections 3.4 and 3.5). With a cache: the slots stand on map pages, one for every
 // macrocell that has blocks in it. Without, the whole volume is decoded and a block's slot is its number.
 
-// Slots of a block and those beside it, x fastest, in the lower and the upper layer. No stage indexes them: what is
-// indexed by a variable does not stay in registers.
-uvec4 lowSlots, highSlots;
-
 // Statistics of this invocation.
 uint touchedSlots = 0u;
 uint visibleBlocks = 0u;
@@ -24,6 +20,11 @@ uint SlotOf(ivec3 block)
   return BlockIndex(block);
 #endif
 }
+
+#ifdef HAS_CACHE_MAP
+// Slots of a block and those beside it, x fastest, in the lower and the upper layer. No stage indexes them: what is
+// indexed by a variable does not stay in registers.
+uvec4 lowSlots, highSlots;
 
 uint SlotBeside(ivec3 first, ivec3 reach, ivec3 side)
 {
@@ -47,17 +48,48 @@ uint FindSlots(ivec3 first, ivec3 reach)
   return low.x | low.y | low.z | low.w | high.x | high.y | high.z | high.w;
 }
 
+// Of those found last.
 uint SlotAt(bvec3 side)
 {
   uvec4 layer = side.z ? highSlots : lowSlots;
   uvec2 row = side.y ? layer.zw : layer.xy;
   return side.x ? row.y : row.x;
 }
+#else
+uint FindSlots(ivec3 first, ivec3 reach)
+{
+  return 0u;
+}
+#endif
+
+// What planes of samples on x, y and z add to the index of a sample: within its block, or where the whole volume is
+// decoded, altogether.
+const uvec3 WITHIN = uvec3(1u, 4u, 16u);
+
+uvec3 BlockOffsets()
+{
+#ifdef HAS_CACHE_MAP
+  return uvec3(0u);
+#else
+  return 64u * uvec3(1, scene.Blocks.x, scene.Blocks.x * scene.Blocks.y);
+#endif
+}
+
+uvec3 SampleOffsets(ivec3 planes)
+{
+  return (uvec3(planes) & 3u) * WITHIN + uvec3(planes >> 2) * BlockOffsets();
+}
+
+// From those of planes to those of the next ones.
+uvec3 NextOffsets(ivec3 planes, uvec3 offsets)
+{
+  return offsets + WITHIN + uvec3(equal(planes & 3, ivec3(3))) * (BlockOffsets() - 4u * WITHIN);
+}
 
 #ifdef BINDING_CACHE_SEEN
-void CountBlocks(ivec3 reach, bool intersected)
+void CountBlocks(ivec3 first, ivec3 reach)
 {
-  if (intersected && atomicExchange(cacheSeen[2u * lowSlots.x], control.PassSerial) != control.PassSerial)
+  if (atomicExchange(cacheSeen[2u * SlotOf(first)], control.PassSerial) != control.PassSerial)
   {
     ++visibleBlocks;
   }
@@ -65,7 +97,7 @@ void CountBlocks(ivec3 reach, bool intersected)
   {
     ivec3 side = SideOffset(i);
     if (all(lessThanEqual(side, reach)) &&
-      atomicExchange(cacheSeen[2u * SlotAt(bvec3(side)) + 1u], control.PassSerial) != control.PassSerial)
+      atomicExchange(cacheSeen[2u * SlotOf(first + side) + 1u], control.PassSerial) != control.PassSerial)
     {
       ++activeBlocks;
     }
@@ -87,10 +119,10 @@ void UsePage(ivec3 coarse)
 #endif
 
 // The blocks found last are about to be used.
-void UseBlocks(ivec3 first, ivec3 reach, bool intersected)
+void UseBlocks(ivec3 first, ivec3 reach)
 {
 #ifdef BINDING_CACHE_SEEN
-  CountBlocks(reach, intersected);
+  CountBlocks(first, reach);
 #endif
 #ifdef HAS_CACHE_MAP
   ivec3 across = ((first + reach) >> 2) - (first >> 2);

@@ -18,27 +18,32 @@ float Excess(uint at)
   return value;
 }
 
-// Corners of a cell of the block whose slots were found last.
+// Where the corners of a cell are, on its lower and its upper z face, x fastest; with a cache, of a cell of the block
+// whose slots were found last.
+void FindCorners(ivec3 cell, out uvec4 low, out uvec4 high)
+{
+  uvec3 near = SampleOffsets(cell);
+  uvec3 far = NextOffsets(cell, near);
+  low = uvec4(near.x, far.x, near.x, far.x) + uvec4(near.y, near.y, far.y, far.y);
+  high = low + far.z;
+  low += near.z;
+#ifdef HAS_CACHE_MAP
+  bvec3 last = equal(cell & 3, ivec3(3)); // the far corners lie in the next block
+  uvec4 upper = last.z ? highSlots : lowSlots;
+  uvec4 lowRows = last.y ? lowSlots : lowSlots.xyxy;
+  uvec4 highRows = last.y ? upper : upper.xyxy;
+  low += 64u * (last.x ? lowRows : lowRows.xxzz);
+  high += 64u * (last.x ? highRows : highRows.xxzz);
+#endif
+}
+
 Corners LoadCorners(ivec3 cell)
 {
-  uvec3 local = uvec3(cell) & 3u;
-  bvec3 last = equal(local, uvec3(3u));
-  uvec3 next = (local + 1u) & 3u; // the first one of the neighbour, behind the last
-  uvec2 x = uvec2(local.x, next.x);
-  uvec2 y = uvec2(local.y, next.y) * 4u;
-  uvec2 z = uvec2(local.z, next.z) * 16u;
-  uvec4 lowLayer = 64u * lowSlots + z.x;
-  uvec4 highLayer = 64u * (last.z ? highSlots : lowSlots) + z.y;
-  uvec2 rows[4] = uvec2[4](lowLayer.xy, last.y ? lowLayer.zw : lowLayer.xy, highLayer.xy, last.y ? highLayer.zw : highLayer.xy);
+  uvec4 low, high;
+  FindCorners(cell, low, high);
   Corners w;
-  w.Low.x = Excess(rows[0].x + y.x + x.x);
-  w.Low.y = Excess((last.x ? rows[0].y : rows[0].x) + y.x + x.y);
-  w.Low.z = Excess(rows[1].x + y.y + x.x);
-  w.Low.w = Excess((last.x ? rows[1].y : rows[1].x) + y.y + x.y);
-  w.High.x = Excess(rows[2].x + y.x + x.x);
-  w.High.y = Excess((last.x ? rows[2].y : rows[2].x) + y.x + x.y);
-  w.High.z = Excess(rows[3].x + y.y + x.x);
-  w.High.w = Excess((last.x ? rows[3].y : rows[3].x) + y.y + x.y);
+  w.Low = vec4(Excess(low.x), Excess(low.y), Excess(low.z), Excess(low.w));
+  w.High = vec4(Excess(high.x), Excess(high.y), Excess(high.z), Excess(high.w));
   return w;
 }
 

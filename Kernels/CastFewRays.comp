@@ -63,7 +63,7 @@ bool CastRay(uint pixel)
     double t;
     if (took && lane < firstMissing)
     {
-      UseBlocks(block, reach, true);
+      UseBlocks(block, reach);
       ++pairs;
       if (IntersectBlock(ray, block, entry, end, t))
       {

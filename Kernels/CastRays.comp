@@ -33,7 +33,7 @@ bool FindHit(Ray ray, inout ivec3 block, out uint key)
     {
       return true;
     }
-    UseBlocks(block, reach, true);
+    UseBlocks(block, reach);
     ++pairs;
     double t;
     if (IntersectBlock(ray, block, entry, end, t))

@@ -36,7 +36,7 @@ bool FindNormal(uint pixel)
   {
     return true;
   }
-  UseBlocks(first, reach, false);
+  UseBlocks(first, reach);
   normals[pixel] = PackNormal(ViewNormal(Gradient(hit), -normalize(EyeRayDirection(pixel))));
   return false;
 }

@@ -28,40 +28,48 @@ ivec3 LastStencilBlock(ivec3 cell)
   return min(cell + 2, scene.Samples.xyz - 1) >> 2;
 }
 
-// For the four planes of samples from one before the cell to one behind it, on each axis: do they lie in the
-// further block, and what do they add to the index within it?
+// For the four planes of samples from one before the cell to one behind it, on each axis: what they add to the index of
+// a sample, and do they lie in the further block?
 struct Stencil
 {
+  uvec4 X, Y, Z;
+#ifdef HAS_CACHE_MAP
   bvec4 FurtherX, FurtherY, FurtherZ;
-  uvec4 WithinX, WithinY, WithinZ;
+#endif
 };
 
 Stencil PlaceStencil(ivec3 cell)
 {
-  ivec4 planes = ivec4(-1, 0, 1, 2);
-  ivec3 last = scene.Samples.xyz - 1;
-  ivec3 first = FirstStencilBlock(cell);
-  ivec4 x = clamp(cell.x + planes, ivec4(0), ivec4(last.x));
-  ivec4 y = clamp(cell.y + planes, ivec4(0), ivec4(last.y));
-  ivec4 z = clamp(cell.z + planes, ivec4(0), ivec4(last.z));
+  ivec3 end = scene.Samples.xyz - 1;
+  ivec3 before = max(cell - 1, ivec3(0));
+  ivec3 behind = min(cell + 2, end);
+  uvec3 a = SampleOffsets(before);
+  uvec3 b = SampleOffsets(cell);
+  uvec3 c = NextOffsets(cell, b);
+  uvec3 d = SampleOffsets(behind);
   Stencil at;
-  at.FurtherX = notEqual(x >> 2, ivec4(first.x));
-  at.FurtherY = notEqual(y >> 2, ivec4(first.y));
-  at.FurtherZ = notEqual(z >> 2, ivec4(first.z));
-  at.WithinX = uvec4(x & 3);
-  at.WithinY = uvec4(y & 3) * 4u;
-  at.WithinZ = uvec4(z & 3) * 16u;
+  at.X = uvec4(a.x, b.x, c.x, d.x);
+  at.Y = uvec4(a.y, b.y, c.y, d.y);
+  at.Z = uvec4(a.z, b.z, c.z, d.z);
+#ifdef HAS_CACHE_MAP
+  ivec3 first = before >> 2;
+  bvec3 fb = notEqual(cell >> 2, first);
+  bvec3 fc = notEqual((cell + 1) >> 2, first);
+  bvec3 fd = notEqual(behind >> 2, first);
+  at.FurtherX = bvec4(false, fb.x, fc.x, fd.x);
+  at.FurtherY = bvec4(false, fb.y, fc.y, fd.y);
+  at.FurtherZ = bvec4(false, fb.z, fc.z, fd.z);
+#endif
   return at;
 }
 
-float SampleAt(bool x, bool y, bool z, uint within)
-{
-  uint index = 64u * SlotAt(bvec3(x, y, z)) + within;
-  return uintBitsToFloat(cacheValues[index]);
-}
-
-// A sample by its planes on x, y and z: a … d of the four.
-#define SAMPLE(i, j, k) SampleAt(at.FurtherX.i, at.FurtherY.j, at.FurtherZ.k, at.WithinX.i + at.WithinY.j + at.WithinZ.k)
+// A sample by its planes on x, y and z: x, y, z, w of the four.
+#ifdef HAS_CACHE_MAP
+#define SAMPLE(i, j, k) uintBitsToFloat( \
+  cacheValues[64u * SlotAt(bvec3(at.FurtherX.i, at.FurtherY.j, at.FurtherZ.k)) + at.X.i + at.Y.j + at.Z.k])
+#else
+#define SAMPLE(i, j, k) uintBitsToFloat(cacheValues[at.X.i + at.Y.j + at.Z.k])
+#endif
 
 // Central differences at the cell's corners, interpolated. Planes y and z of the stencil are the cell's own.
 vec3 Gradient(HitPoint hit)
