@@ -6,8 +6,8 @@ without: the compressed stream, the value ranges and the buffers of the image.
 
 from __future__ import annotations
 
-from .fields import compressed
-from .ours import Isosurface, other_bytes
+from .orbit import render_orbit, times
+from .ours import other_bytes
 from .timing import summary
 
 #: Parts of what the mapper takes by itself beyond what it cannot do without.
@@ -42,19 +42,12 @@ def measure_budget(field, settings):
 
 
 def _measure(field, settings, budget):
-    """Times of the orbit's images at every isovalue, after one that is not counted; memory."""
-    image, isovalues = compressed(field), settings.isovalues_of(field)
-    cameras = settings.cameras(image)
-    view = Isosurface(image, isovalues[0], settings.size, memory_budget=budget)
-    view.render_from(cameras[-1])
-    times, passes, total = [], [], 0
-    for isovalue in isovalues:
-        view.set_isovalue(isovalue)
-        for camera in cameras * settings.repeat:
-            times.append(view.render_from(camera))
-            about = view.statistics()
-            passes.append(len(about["passes"]))
-            total = max(total, about["memory"]["total"])
-    view.close()
-    point = {"total": total, "time": summary(times), "passes": sum(passes) / len(passes)}
-    return point, about["memory"]
+    """The orbit's images within a budget: a point, and the memory at the end."""
+    _, images = render_orbit(field, settings, memory_budget=budget)
+    about = [image["statistics"] for image in images]
+    point = {
+        "total": max(a["memory"]["total"] for a in about),
+        "time": summary(times(images)),
+        "passes": sum(len(a["passes"]) for a in about) / len(about),
+    }
+    return point, about[-1]["memory"]

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import argparse
 import importlib.util
+import os
 import shlex
 import sys
 import time
+from dataclasses import fields
 from pathlib import Path
 
 from ..render import MAX_SIZE
@@ -14,7 +16,7 @@ from .document import load_document, merge, new_document, save_document
 from .machine import describe_machine
 from .report import write_markdown
 from .sets import SETS, steps
-from .settings import PEERS, Settings
+from .settings import IMAGE_SIZES, PEERS, Settings
 
 
 def add_bench(command, size_type):
@@ -74,6 +76,11 @@ def _add_set(sets, name, defaults, size_type):
         one.add_argument(
             "--largest", metavar="N", type=_at_least(64), help="largest side of a volume"
         )
+        one.add_argument(
+            "--images", metavar="WxH,WxH", default=IMAGE_SIZES,
+            type=lambda text: tuple(size_type(part) for part in text.split(",")),
+            help="sizes of images (default: 640x360,1280x720,1920x1080,3840x2160)",
+        )  # fmt: skip
     one.add_argument(
         "--no-plots", action="store_true", help="leave the plots, which need matplotlib, to 'report'"
     )
@@ -108,16 +115,10 @@ def _isovalues(text):
 
 def _measure(parsed):
     """Run a set; results are saved after every measurement, so that an interrupted run counts."""
-    if max(parsed.size) > MAX_SIZE:
-        raise ValueError(f"--size: width and height must be 1 to {MAX_SIZE} pixels")
-    settings = Settings(
-        parsed.size,
-        parsed.isovalues,
-        parsed.positions,
-        parsed.repeat,
-        parsed.seed,
-        getattr(parsed, "largest", None),
-    )
+    given = {field.name: getattr(parsed, field.name, None) for field in fields(Settings)}
+    settings = Settings(**{key: value for key, value in given.items() if value is not None})
+    if max(max(size) for size in (settings.size, *settings.images)) > MAX_SIZE:
+        raise ValueError(f"images must be at most {MAX_SIZE} pixels wide and high")
     measurements = steps(parsed.set, parsed.fields, settings)
     if not parsed.no_plots:
         _check_matplotlib()
@@ -128,8 +129,10 @@ def _measure(parsed):
     for number, (kind, what, measure) in enumerate(measurements, 1):
         print(f"{number}/{len(measurements)} {kind} {what}", file=sys.stderr, flush=True)
         document["measurements"].setdefault(kind, []).append(measure())
-        document["runs"][0]["seconds"] = round(time.monotonic() - start, 1)
-        document["runs"][0]["complete"] = number == len(measurements)
+        run = document["runs"][0]
+        run["seconds"] = round(time.monotonic() - start, 1)
+        run["load"].append(round(os.getloadavg()[0], 2))
+        run["complete"] = number == len(measurements)
         save_document(document, parsed.output)
     _write(document, parsed.output, not parsed.no_plots)
 

@@ -1,21 +1,21 @@
 """The paper's evaluation (its section 5): random isovalues, each seen from an orbit of cameras.
 
-Three runs over the same images, one after the other, each in a new window: for the times, with
-nothing else measured; for the counts of blocks; and without speculation. Before a run one image is
-rendered and not counted: it uploads the volume and compiles the shaders. From then on a run is
-what a user does who goes around the volume and moves the isovalue: the block cache lives on.
+Three runs over the same images (see `orbit`), one after the other: for the times, with nothing
+else measured; for the counts of blocks; and without speculation.
 """
 
 from __future__ import annotations
 
 import statistics
+from dataclasses import replace
 
 import numpy as np
 
 from .explicit import BLOCK_BYTES, BlockRanges, measure_mesh
-from .fields import compressed, decompressed, gib, samples
+from .fields import decompressed, gib, samples
 from .machine import available_bytes
-from .ours import Isosurface, cache_bytes, other_bytes
+from .orbit import render_orbit, times
+from .ours import cache_bytes, other_bytes
 from .timing import summary
 
 #: Meshes of at most so many of the isovalues are made, evenly chosen.
@@ -39,71 +39,46 @@ def measure_protocol(field, settings):
         ``first_ms``, ``time`` (a `timing.summary`), ``table2``, ``memory``, ``by_pass`` (``with``
         and ``without`` speculation), ``time_without`` speculation, ``active`` and ``explicit``.
     """
-    first, timed = _run(field, settings, rounds=settings.repeat)
-    _, counted = _run(field, settings, detailed=True)
-    _, without = _run(field, settings, speculation=False)
+    first, timed = render_orbit(field, settings)
+    once = replace(settings, repeat=1)
+    _, counted = render_orbit(field, once, detailed=True)
+    _, without = render_orbit(field, once, speculation=False)
     counts = [image["statistics"] for image in counted]
     return {
         **settings.heading(field),
         "first_ms": first,
-        "time": summary([image["ms"] for image in timed]),
-        "table2": _table2(counts, settings.size),
-        "memory": _memory([image["statistics"] for image in timed], settings.size),
+        "time": summary(times(timed)),
+        "table2": _table2(counts, field.blocks, settings.size),
+        "memory": _memory([image["statistics"]["memory"] for image in timed], field, settings),
         "by_pass": {"with": _by_pass(timed), "without": _by_pass(without)},
-        "time_without": summary([image["ms"] for image in without]),
-        "active": _active(counts),
+        "time_without": summary(times(without)),
+        "active": _active(counts, field.blocks),
         "explicit": _measure_explicit(field, settings),
     }
-
-
-def _run(field, settings, rounds=1, **options):
-    """Render all images; milliseconds of the first of all, and time and statistics of each."""
-    image, isovalues = compressed(field), settings.isovalues_of(field)
-    cameras = settings.cameras(image)
-    view = Isosurface(image, isovalues[0], settings.size, **options)
-    first = view.render_from(cameras[-1])
-    images = []
-    for _ in range(rounds):
-        for isovalue in isovalues:
-            view.set_isovalue(isovalue)
-            for camera in cameras:
-                milliseconds = view.render_from(camera)
-                about = {**view.statistics(), "blocks": field.blocks}
-                images.append({"ms": milliseconds, "statistics": about})
-    view.close()
-    return first, images
 
 
 def _passes(images):
     return [one for image in images for one in image["passes"]]
 
 
-def _table2(images, size):
+def _table2(images, blocks, size):
     """The columns of the paper's Table 2, and the time of a pass."""
     passes, pixels = _passes(images), size[0] * size[1]
+    speculation = [p["speculation"] for p in passes]
     return {
         "passes_median": statistics.median(len(image["passes"]) for image in images),
-        "visible_percent": _percent(images, "visible_blocks"),
-        "speculation_median": statistics.median(p["speculation"] for p in passes or [_NO_PASS]),
+        "visible_percent": _mean([100 * p["visible_blocks"] / blocks for p in passes]),
+        "speculation_median": statistics.median(speculation) if speculation else 0,
         "utilisation_percent": _mean([100 * p["pairs"] / pixels for p in passes]),
     }
-
-
-_NO_PASS = {"speculation": 0}
-
-
-def _percent(images, key):
-    """Mean over all passes of a count of blocks, in percent of the volume's."""
-    return _mean([100 * p[key] / image["blocks"] for image in images for p in image["passes"]])
 
 
 def _mean(values):
     return statistics.fmean(values) if values else 0.0
 
 
-def _memory(images, size):
+def _memory(memories, field, settings):
     """The mapper's memory: means over the images, and the largest."""
-    memories = [image["memory"] for image in images]
     totals = [memory["total"] for memory in memories]
     return {
         "total_mean": _mean(totals),
@@ -111,8 +86,8 @@ def _memory(images, size):
         "cache_mean": _mean([cache_bytes(memory) for memory in memories]),
         "compressed": memories[0]["compressed"],
         "other_max": max(other_bytes(memory) for memory in memories),
-        "blocks": images[0]["blocks"],
-        "pixels": size[0] * size[1],
+        "blocks": field.blocks,
+        "pixels": settings.size[0] * settings.size[1],
     }
 
 
@@ -143,11 +118,9 @@ def _elapsed(series):
     return series[-1]["elapsed_ms"] - before
 
 
-def _active(images):
+def _active(images, blocks):
     """Active blocks of each image, in percent of the volume's: mean and largest over its passes."""
-    shares = [
-        [100 * p["active_blocks"] / image["blocks"] for p in image["passes"]] for image in images
-    ]
+    shares = [[100 * p["active_blocks"] / blocks for p in image["passes"]] for image in images]
     return {
         "mean_percent": [_mean(series) for series in shares],
         "max_percent": [max(series, default=0.0) for series in shares],

@@ -90,7 +90,8 @@ def _heading(document):
         f"its filters on {machine['smp']}; Python {machine['python']}; ProgIso "
         f"{machine['progiso']}.",
         "",
-        "Times are wall clock from the call of `Render()` to the end of the GPU's work.",
+        "Times are wall clock from the call of `Render()` to the end of the GPU's work. Processes "
+        "that ran or waited to run, this one included: *load*.",
         "",
     ]
     rows = [
@@ -99,10 +100,11 @@ def _heading(document):
             run["commit"] or "–",
             run["started"],
             f"{number(run['seconds'])} s" + ("" if run["complete"] else ", not complete"),
+            f"{number(min(run['load']))} to {number(max(run['load']))}",
         ]
         for run in document["runs"]
     ]
-    return lines + table(["command", "commit", "started", "took"], rows)
+    return lines + table(["command", "commit", "started", "took", "load"], rows)
 
 
 def _summary(verdicts):
@@ -354,7 +356,7 @@ def _errors(report, records):
         "Against a double-precision caster over the uncompressed samples: how far off the depth "
         "is, in voxels along the ray, where both hit; and the part of all rays that hit where "
         "they should not or the other way round (of a partial image also what it has not "
-        "finished). Times are of the view after the opposite one, both rendered before.",
+        "finished). Times are medians of the view after its opposite, the view having been rendered before.",
         "",
     ]
     for record in records:

@@ -12,12 +12,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from .fields import Field, TooLarge, compressed
-from .ours import Isosurface, other_bytes
+from .fields import Field, TooLarge
+from .orbit import render_orbit, times
+from .ours import other_bytes
 from .timing import summary
-
-#: Width and height of the images.
-IMAGE_SIZES = ((640, 360), (1280, 720), (1920, 1080), (3840, 2160))
 
 #: Samples along x, y and z; the last is the paper's largest volume.
 VOLUME_SIZES = (*((n,) * 3 for n in (64, 128, 256, 512, 1024)), (2048, 2048, 1920))
@@ -29,16 +27,14 @@ FIXED_K, SAMPLES_PER_PERIOD = 6.0, 128 / 3
 RATE = 2.0
 
 
-def measure_image_scaling(field, settings, sizes=IMAGE_SIZES):
+def measure_image_scaling(field, settings):
     """Measure a field at several image sizes.
 
     Parameters
     ----------
     field : fields.Field
     settings : settings.Settings
-        All but its size.
-    sizes : sequence of tuple of int
-        Width and height.
+        Its `images` are measured.
 
     Returns
     -------
@@ -48,12 +44,9 @@ def measure_image_scaling(field, settings, sizes=IMAGE_SIZES):
         ``other_bytes``. The latter two are None with fewer than two points.
     """
     points = []
-    for size in sizes:
-        time, memory = _measure(field, replace(settings, size=size))
-        pixels = size[0] * size[1]
-        points.append(
-            {"size": list(size), "pixels": pixels, "time": time, "other_bytes": other_bytes(memory)}
-        )
+    for size in settings.images:
+        figures = _measure(field, replace(settings, size=size))
+        points.append({"size": list(size), "pixels": size[0] * size[1], **figures})
     pixels = [point["pixels"] for point in points]
     return {
         **settings.heading(field),
@@ -89,26 +82,19 @@ def measure_volume_scaling(grows, settings, sizes=VOLUME_SIZES):
             left_out[field.name] = f"larger than {settings.largest}"
             continue
         try:
-            time, memory = _measure(field, settings)
+            figures = _measure(field, settings)
         except TooLarge as error:
             left_out[field.name] = str(error)
             continue
-        points.append(
-            {
-                "field": field.name,
-                "voxels": field.voxels,
-                "blocks": field.blocks,
-                "time": time,
-                "other_bytes": other_bytes(memory),
-            }
-        )
+        about = {"field": field.name, "voxels": field.voxels, "blocks": field.blocks}
+        points.append({**about, **figures})
     heading = settings.heading(fields[0])
-    times = [point["time"]["mean"] for point in points]
+    means = [point["time"]["mean"] for point in points]
     return {
         **{key: value for key, value in heading.items() if key != "field"},
         "grows": grows,
         "points": points,
-        "exponent": exponent([point["voxels"] for point in points], times),
+        "exponent": exponent([point["voxels"] for point in points], means),
         "bytes_per_block": slope(
             [point["blocks"] for point in points], [point["other_bytes"] for point in points]
         ),
@@ -122,18 +108,10 @@ def _gyroid(dimensions, grows):
 
 
 def _measure(field, settings):
-    """Times of the orbit's images at every isovalue, after one that is not counted; memory."""
-    image, isovalues = compressed(field), settings.isovalues_of(field)
-    cameras = settings.cameras(image)
-    view = Isosurface(image, isovalues[0], settings.size)
-    view.render_from(cameras[-1])
-    times = []
-    for isovalue in isovalues:
-        view.set_isovalue(isovalue)
-        times += [view.render_from(camera) for camera in cameras * settings.repeat]
-    memory = view.statistics()["memory"]
-    view.close()
-    return summary(times), memory
+    """Times of the orbit's images, and bytes of GPU memory beside payload and cache."""
+    _, images = render_orbit(field, settings)
+    memory = images[-1]["statistics"]["memory"]
+    return {"time": summary(times(images)), "other_bytes": other_bytes(memory)}
 
 
 def exponent(x, y):

@@ -11,7 +11,7 @@ from .fields import parse_field
 from .latency import measure_latency
 from .peers import measure_peers
 from .protocol import measure_protocol
-from .scaling import IMAGE_SIZES, measure_image_scaling, measure_volume_scaling
+from .scaling import measure_image_scaling, measure_volume_scaling
 from .settings import PEERS
 
 SCANS = ("ct-cranium-r8", "mri-brain-r8")
@@ -41,7 +41,7 @@ class Defaults:
 
 
 SETS = {
-    "quick": Defaults("a bit of everything, within minutes without a GPU", QUICK, 2, 3),
+    "quick": Defaults("a bit of everything, within minutes without a GPU", QUICK, 2, 2),
     "paper": Defaults(
         "the paper's protocol, first images and small moves", (*SCANS, *SMALL, *LARGE), 100, 10
     ),
@@ -54,9 +54,9 @@ SETS = {
 }
 
 #: What `quick` leaves out of the longer series.
-_QUICK_SIZES = IMAGE_SIZES[:2]
+_QUICK_IMAGES = ((640, 360), (1280, 720))
 _QUICK_VOLUMES = ((64,) * 3, (128,) * 3, (256,) * 3)
-_QUICK_RATES, _QUICK_DISTANCES = (2.0, 4.0, 8.0, 16.0), (0.1, 0.5, 1.0)
+_QUICK_RATES, _QUICK_DISTANCES = (2.0, 4.0, 8.0, 16.0), (0.25, 0.5, 1.0)
 
 
 def steps(name, fields, settings):
@@ -99,13 +99,13 @@ def _scaling(fields, settings):
 
 
 def _quick(fields, settings):
-    fixed, small = replace(settings, isovalues=PEERS), fields[-1:]
+    fixed = replace(settings, isovalues=PEERS, images=_QUICK_IMAGES)
     volumes = partial(measure_volume_scaling, False, fixed, _QUICK_VOLUMES)
     return [
         *_each("peers", measure_peers, fields, fixed),
         *_paper(fields, settings),
         *_each("errors", measure_errors, fields, fixed, _QUICK_RATES, _QUICK_DISTANCES),
-        *_each("image_scaling", measure_image_scaling, small, fixed, _QUICK_SIZES),
+        *_each("image_scaling", measure_image_scaling, fields[-1:], fixed),
         ("volume_scaling", "same surface", volumes),
     ]
 

@@ -7,6 +7,9 @@ from typing import Optional
 
 from ..camera import orbit_camera
 
+#: Widths and heights that the scaling with image size goes through.
+IMAGE_SIZES = ((640, 360), (1280, 720), (1920, 1080), (3840, 2160))
+
 #: Stands for a field's fixed isovalues instead of a number of random ones.
 PEERS = "peers"
 
@@ -29,6 +32,8 @@ class Settings:
         Of the random isovalues.
     largest : int, optional
         Largest side of the volumes in the scaling with volume size.
+    images : tuple of tuple of int
+        Widths and heights in the scaling with image size.
     """
 
     size: tuple
@@ -37,6 +42,7 @@ class Settings:
     repeat: int = 1
     seed: int = 0
     largest: Optional[int] = None
+    images: tuple = IMAGE_SIZES
 
     def isovalues_of(self, field):
         """The isovalues that a field is rendered at, a list of float."""
