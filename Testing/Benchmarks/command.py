@@ -50,7 +50,8 @@ def _add_set(sets, name, defaults, size_type):
         name, help=defaults.description, description=_sentence(defaults.description)
     )
     one.add_argument(
-        "--fields", metavar="A,B", type=lambda text: tuple(text.split(",")), default=defaults.fields,
+        "--fields", metavar="A,B", default=defaults.fields,
+        type=lambda text: tuple(text.split(",")),
         help=f"NAME-SIZE-kK-rRATE each (default: {', '.join(defaults.fields)})",
     )  # fmt: skip
     one.add_argument(
@@ -82,7 +83,9 @@ def _add_set(sets, name, defaults, size_type):
             help="sizes of images (default: 640x360,1280x720,1920x1080,3840x2160)",
         )  # fmt: skip
     one.add_argument(
-        "--no-plots", action="store_true", help="leave the plots, which need matplotlib, to 'report'"
+        "--no-plots",
+        action="store_true",
+        help="leave the plots, which need matplotlib, to 'report'",
     )
     _add_output(one)
     one.set_defaults(run=_measure, set=name)

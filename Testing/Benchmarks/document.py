@@ -13,6 +13,9 @@ SCHEMA = 1
 
 FILE = "results.json"
 
+#: What has to be the same for figures to stand beside each other.
+_SAME = ("cpu", "cores", "gl", "gl_version", "vtk", "smp")
+
 
 def new_document(name, command, machine):
     """Begin a run's results.
@@ -115,9 +118,9 @@ def merge(documents):
     first = documents[0]
     measurements = {}
     for document in documents:
-        if document["machine"] != first["machine"]:
-            ours, other = first["machine"], document["machine"]
-            differing = [key for key in ours if ours[key] != other.get(key)]
+        ours, other = first["machine"], document["machine"]
+        differing = [key for key in _SAME if ours[key] != other[key]]
+        if differing:
             raise ValueError(
                 f"the results are of different machines ({', '.join(differing)} differ): "
                 "make a report of each"

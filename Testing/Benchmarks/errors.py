@@ -80,7 +80,8 @@ def depth_error(depth, expected, voxels):
     -------
     dict
         ``mean``, ``median`` and ``p99`` in voxels over the rays that both hit (None where there
-        are none), and ``wrong``, the fraction of all rays that hit where they should not or the other way round.
+        are none), and ``wrong``, the fraction of all rays that hit where they should not or the
+        other way round.
 
     Examples
     --------
@@ -196,7 +197,8 @@ class _Measurement:
 
     def _mapper(self, distance):
         view = VolumeMapper(self._image, self._isovalue, self._settings.size, distance)
-        label = DEFAULT_DISTANCE if distance is None else f"{distance:g} voxels"
+        unit = "voxel" if distance == 1 else "voxels"
+        label = DEFAULT_DISTANCE if distance is None else f"{distance:g} {unit}"
         point = self._point(label, self._time(view), view)
         view.close()
         return point

@@ -1,4 +1,4 @@
-"""The volumes that are measured, by names that say all: ``gyroid-512-k12-r4``, ``ct-cranium-r8``."""
+"""The volumes that are measured, by names that say all: ``gyroid-512-k12-r4``, ``ct-cranium``."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """What the project wants to reach, and whether a figure does.
 
 Every function takes measured figures and returns a `Verdict`, or None where no goal is set for
-that machine, field or image size.
+that machine (see `machine.describe_machine`), field (its name, or its number of voxels) or image
+size (width and height in pixels). Times are in milliseconds, memory is in bytes.
 """
 
 from __future__ import annotations
@@ -107,7 +108,9 @@ def moved(cold_ms, moved_ms):
 
 def time_exponent(value):
     """Exponent of time over voxels; None without one."""
-    return None if value is None else _at_most("time over voxels, exponent", value, EXPONENT, number)
+    return (
+        None if value is None else _at_most("time over voxels, exponent", value, EXPONENT, number)
+    )
 
 
 def per_block(value):
@@ -163,7 +166,9 @@ def against_paper(machine, field, size, mean_ms):
     figure = literature(kind, field, size)
     if figure is None:
         return []
-    times = zip(("as published", "sort replaced"), (figure.ms, figure.strong_ms), FASTER_THAN_PAPER[kind])
+    times = zip(
+        ("as published", "sort replaced"), (figure.ms, figure.strong_ms), FASTER_THAN_PAPER[kind]
+    )
     return [
         Verdict(
             f"complete image, against the paper's implementation, {variant}",

@@ -13,8 +13,9 @@ from typing import Optional
 GPU, SOFTWARE = "NVIDIA H200", "2 cores, Mesa lavapipe"
 
 SOURCE = (
-    "Usher, Dyken and Kumar (LDAV 2023), their public implementation, as measured beforehand: means "
-    f"on an {GPU}, medians on {SOFTWARE}; in brackets with its sort replaced by a counting sort"
+    "Usher, Dyken and Kumar (LDAV 2023), their public implementation, as measured beforehand: "
+    f"means on an {GPU}, medians on {SOFTWARE}; in brackets with its sort replaced by a counting "
+    "sort"
 )
 
 

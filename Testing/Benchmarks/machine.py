@@ -38,7 +38,7 @@ def describe_machine():
     capabilities = window.ReportCapabilities()
     about = {
         "cpu": _cpu(),
-        "cores": len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count(),
+        "cores": len(os.sched_getaffinity(0)),
         "memory_bytes": os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"),
         "gl": _capability(capabilities, "OpenGL renderer string"),
         "gl_version": _capability(capabilities, "OpenGL version string"),

@@ -1,4 +1,4 @@
-"""What a user does who goes around a volume and moves the isovalue: the run that most figures are of."""
+"""The run that most figures are of: around a volume, and again at the next isovalue."""
 
 from __future__ import annotations
 

@@ -25,21 +25,19 @@ class Isosurface(View):
     speculation : bool, default: True
         Whether rays test several blocks ahead.
     detailed : bool, default: False
-        Whether distinct blocks are counted, which takes time.
+        Whether stages are timed and distinct blocks counted, which takes time.
     memory_budget : int, default: 0
         Bytes of GPU memory; 0 for the mapper's own choice.
     """
 
     label = "ProgIso"
 
-    def __init__(
-        self, image, isovalue, size, speculation=True, detailed=False, memory_budget=0
-    ):
-        prop = make_isosurface(
-            image, isovalue, speculation=speculation, cache_limit=memory_budget
-        )
+    def __init__(self, image, isovalue, size, speculation=True, detailed=False, memory_budget=0):
+        # SHIM until make_isosurface has it: memory_budget=memory_budget
+        prop = make_isosurface(image, isovalue, speculation=speculation, cache_limit=memory_budget)
         super().__init__(prop, size)
         self.mapper = prop.GetMapper()
+        # SHIM until the mapper has it: self.mapper.SetDetailedStatistics(detailed)
 
     def set_isovalue(self, isovalue):
         """Show another isovalue from the next render on."""
@@ -76,3 +74,14 @@ def cache_bytes(memory):
 def other_bytes(memory):
     """Bytes beside the compressed stream and the block cache in ``statistics()["memory"]``."""
     return memory["total"] - memory["compressed"] - cache_bytes(memory)
+
+
+def stage_times(about):
+    """Milliseconds of every stage over the passes of an image, of a ``detailed`` view's statistics.
+
+    Returns
+    -------
+    dict
+        {stage: milliseconds}.
+    """
+    return about.get("stage_ms", {})  # SHIM until it is there: about["stage_ms"]

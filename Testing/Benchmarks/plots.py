@@ -101,7 +101,7 @@ def _draw_peers(records):
                 axes.barh(i + offset, value, 0.24, color=color)
                 axes.text(value * 1.06, i + offset, f"{number(value)}", va="center", fontsize=8)
         axes.set_xscale("log")
-        axes.margins(x=0.12)
+        axes.margins(x=0.15)
         axes.set_xlim(left=_decade_below(row["later"]["mean"] for row in rows))
         _log(axes.xaxis)
         axes.set_yticks(range(len(rows)), [row["peer"] for row in rows])
@@ -227,10 +227,12 @@ def _error_over_time(record):
         _draw_wrong(lower, points, color, marker)
     for axes in (upper, lower):
         axes.set_xscale("log")
+        axes.margins(x=0.1)
     upper.set_yscale("log")
     # Down to one wrong ray the axis is logarithmic, below it shows that there is none.
-    lower.set_yscale("symlog", linthresh=100 / (record["size"][0] * record["size"][1]))
-    lower.set_ylim(bottom=0)
+    one_ray = 100 / (record["size"][0] * record["size"][1])
+    lower.set_yscale("symlog", linthresh=one_ray)
+    lower.set_ylim(bottom=-0.3 * one_ray)
     _log(lower.xaxis)
     _log(upper.yaxis)
     lower.yaxis.set_major_formatter(FuncFormatter(lambda value, _: number(value)))
@@ -238,7 +240,8 @@ def _error_over_time(record):
     lower.set_ylabel("rays with wrong\nhit or miss in %")
     lower.set_xlabel("ms to that image")
     upper.set_title(f"{_titled(record)}, isovalue {number(record['isovalue'])}")
-    upper.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    handles, labels = upper.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=3)
     return figure
 
 
@@ -267,7 +270,7 @@ def _draw_wrong(axes, points, color, marker):
     line, alone = _line(points)
     for part, style in ((line, {"ls": "--"}), (alone, {"ls": "none", "mfc": "white", "ms": 9})):
         time, wrong = _xy(part, "wrong")
-        axes.plot(time, [100 * w for w in wrong], color=color, marker=marker, clip_on=False, **style)
+        axes.plot(time, [100 * w for w in wrong], color=color, marker=marker, **style)
 
 
 def _xy(points, key):

@@ -15,7 +15,7 @@ from .explicit import BLOCK_BYTES, BlockRanges, measure_mesh
 from .fields import decompressed, gib, samples
 from .machine import available_bytes
 from .orbit import render_orbit, times
-from .ours import cache_bytes, other_bytes
+from .ours import cache_bytes, other_bytes, stage_times
 from .timing import summary
 
 #: Meshes of at most so many of the isovalues are made, evenly chosen.
@@ -37,7 +37,8 @@ def measure_protocol(field, settings):
     -------
     dict
         ``first_ms``, ``time`` (a `timing.summary`), ``table2``, ``memory``, ``by_pass`` (``with``
-        and ``without`` speculation), ``time_without`` speculation, ``active`` and ``explicit``.
+        and ``without`` speculation), ``time_without`` speculation, ``active``, ``stage_ms`` and
+        ``explicit``.
     """
     first, timed = render_orbit(field, settings)
     once = replace(settings, repeat=1)
@@ -53,6 +54,7 @@ def measure_protocol(field, settings):
         "by_pass": {"with": _by_pass(timed), "without": _by_pass(without)},
         "time_without": summary(times(without)),
         "active": _active(counts, field.blocks),
+        "stage_ms": _stages(counts),
         "explicit": _measure_explicit(field, settings),
     }
 
@@ -116,6 +118,13 @@ def _elapsed(series):
     """Milliseconds of the last of some passes."""
     before = series[-2]["elapsed_ms"] if len(series) > 1 else 0.0
     return series[-1]["elapsed_ms"] - before
+
+
+def _stages(images):
+    """Mean milliseconds of an image's stages, over all images."""
+    shares = [stage_times(image) for image in images]
+    names = dict.fromkeys(name for share in shares for name in share)
+    return {name: sum(share.get(name, 0.0) for share in shares) / len(shares) for name in names}
 
 
 def _active(images, blocks):

@@ -112,7 +112,13 @@ def _summary(verdicts):
         return []
     met = sum(verdict.met for _, verdict in verdicts)
     rows = [
-        [what, verdict.what, verdict.measured, verdict.goal, "met" if verdict.met else "**not met**"]
+        [
+            what,
+            verdict.what,
+            verdict.measured,
+            verdict.goal,
+            "met" if verdict.met else "**not met**",
+        ]
         for what, verdict in verdicts
     ]
     heading = [f"## Goals: {met} of {len(verdicts)} met", ""]
@@ -199,9 +205,7 @@ def _peer_goals(report, record, by_peer):
         verdicts.append(goals.against_mapper(machine, size, field, voxels, mean, theirs))
         if mapper["gpu_bytes"]:
             verdicts.append(
-                goals.memory_against_mapper(
-                    machine, voxels, ours["gpu_bytes"], mapper["gpu_bytes"]
-                )
+                goals.memory_against_mapper(machine, voxels, ours["gpu_bytes"], mapper["gpu_bytes"])
             )
     return report.goal(record, *verdicts)
 
@@ -218,6 +222,7 @@ def _protocol(report, records):
         "",
         *_protocol_times(report, records),
         *_table2(records),
+        *_stages(records),
         *_tables34(report, records),
     ]
 
@@ -259,6 +264,24 @@ def _table2(records):
         for record in records
     ]
     return ["Passes (the paper's Table 2):", "", *table(headers, rows)]
+
+
+def _stages(records):
+    """Where the time goes, the longest stage of all first."""
+    names = dict.fromkeys(name for record in records for name in record["stage_ms"])
+    if not names:
+        return []
+    total = {name: sum(r["stage_ms"].get(name, 0.0) for r in records) for name in names}
+    ordered = sorted(names, key=total.get, reverse=True)
+    rows = [
+        [_of(record), *(milliseconds(record["stage_ms"].get(name)) for name in ordered)]
+        for record in records
+    ]
+    return [
+        "Stages, means over the images, timed in a run of their own:",
+        "",
+        *table(["field", *ordered], rows),
+    ]
 
 
 def _tables34(report, records):
@@ -356,7 +379,8 @@ def _errors(report, records):
         "Against a double-precision caster over the uncompressed samples: how far off the depth "
         "is, in voxels along the ray, where both hit; and the part of all rays that hit where "
         "they should not or the other way round (of a partial image also what it has not "
-        "finished). Times are medians of the view after its opposite, the view having been rendered before.",
+        "finished). Times are medians of the view after its opposite, the view having been "
+        "rendered before.",
         "",
     ]
     for record in records:
@@ -381,9 +405,7 @@ def _error_table(report, record):
         for name, points in record["series"].items()
         for point in points
     ]
-    mapper = next(
-        p for p in record["series"][VolumeMapper.label] if p["label"] == DEFAULT_DISTANCE
-    )
+    mapper = next(p for p in record["series"][VolumeMapper.label] if p["label"] == DEFAULT_DISTANCE)
     rates = record["series"]["ProgIso, rates"]
     verdict = goals.error_against_mapper(record["field"], rates, mapper)
     goal = report.goal(record, verdict)
@@ -465,11 +487,15 @@ def _volume_scaling(report, records):
             for point in record["points"]
         ]
         left_out = [f"{name}: {reason}" for name, reason in record["left_out"].items()]
-        verdicts = (goals.time_exponent(record["exponent"]), goals.per_block(record["bytes_per_block"]))
+        verdicts = (
+            goals.time_exponent(record["exponent"]),
+            goals.per_block(record["bytes_per_block"]),
+        )
+        goal = report.goal(record, *verdicts) or "too few sizes to tell"
         lines += [
-            f"{_surface(record).capitalize()}, {pixels(record['size'])}; exponent "
-            f"{number(record['exponent'])}, {number(record['bytes_per_block'])} bytes of GPU memory "
-            f"for one more block ({report.goal(record, *verdicts) or 'no goal'}).",
+            f"{_surface(record).capitalize()}, {pixels(record['size'])}: exponent of time over "
+            f"voxels {number(record['exponent'])}; {number(record['bytes_per_block'])} bytes of "
+            f"GPU memory for one more block ({goal}).",
             "",
             *table(["field", "voxels", "mean", "median", "min", "goal"], rows),
             *([f"Left out: {'; '.join(left_out)}.", ""] if left_out else []),

@@ -100,11 +100,12 @@ def _scaling(fields, settings):
 
 def _quick(fields, settings):
     fixed = replace(settings, isovalues=PEERS, images=_QUICK_IMAGES)
+    small = replace(fixed, size=tuple(max(1, n // 2) for n in settings.size))
     volumes = partial(measure_volume_scaling, False, fixed, _QUICK_VOLUMES)
     return [
         *_each("peers", measure_peers, fields, fixed),
         *_paper(fields, settings),
-        *_each("errors", measure_errors, fields, fixed, _QUICK_RATES, _QUICK_DISTANCES),
+        *_each("errors", measure_errors, fields, small, _QUICK_RATES, _QUICK_DISTANCES),
         *_each("image_scaling", measure_image_scaling, fields[-1:], fixed),
         ("volume_scaling", "same surface", volumes),
     ]
