@@ -141,10 +141,13 @@ def _measure(parsed):
 
 
 def _report(parsed):
-    document = merge([load_document(path) for path in parsed.results])
     _check_matplotlib()
+    documents = [load_document(path) for path in parsed.results]
     parsed.output.mkdir(parents=True, exist_ok=True)
-    _write(document, parsed.output, True)
+    try:
+        _write(merge(documents), parsed.output, True)
+    except KeyError as error:
+        raise ValueError(f"the results lack {error}: measure again") from None
 
 
 def _check_matplotlib():

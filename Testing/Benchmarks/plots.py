@@ -232,10 +232,12 @@ def _error_over_time(record):
     # Down to one wrong ray the axis is logarithmic, below it shows that there is none.
     one_ray = 100 / (record["size"][0] * record["size"][1])
     lower.set_yscale("symlog", linthresh=one_ray)
-    lower.set_ylim(bottom=-0.3 * one_ray)
+    lower.set_ylim(-0.3 * one_ray, 2 * max(lower.get_ylim()[1], one_ray))
+    lower.yaxis.set_major_formatter(
+        FuncFormatter(lambda value, _: "" if 0 < value < one_ray else number(value))
+    )
     _log(lower.xaxis)
     _log(upper.yaxis)
-    lower.yaxis.set_major_formatter(FuncFormatter(lambda value, _: number(value)))
     upper.set_ylabel("depth error in voxels:\nmean (marker) to 99th percentile (tick)")
     lower.set_ylabel("rays with wrong\nhit or miss in %")
     lower.set_xlabel("ms to that image")

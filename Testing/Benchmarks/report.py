@@ -416,7 +416,7 @@ def _error_table(report, record):
         f"{resolution} (of VTK's peers the shader writes 24 bits in place of the colour, for the "
         "volume mapper where it shades). The extraction is part of the time where it says so.",
         "",
-        *table(["", "", "time", "error: mean", "median", "99 %", "wrong rays"], rows),
+        *table(["way", "", "time", "error: mean", "median", "99 %", "wrong rays"], rows),
         *([f"Goal: {goal} ({verdict.measured}).", ""] if verdict else []),
     ]
 

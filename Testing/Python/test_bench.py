@@ -149,6 +149,7 @@ FAILURES = {
     "no results": (["report", "none.json"], "none.json"),
     "not JSON": (["report", "a-file"], "a-file"),
     "other JSON": (["report", "other.json"], "schema"),
+    "damaged JSON": (["report", "damaged.json"], "machine"),
 }
 
 
@@ -157,6 +158,7 @@ def test_errors_are_one_line(folder, case):
     arguments, word = FAILURES[case]
     (folder / "a-file").write_text("?")
     (folder / "other.json").write_text('{"schema": 0}')
+    (folder / "damaged.json").write_text('{"schema": 1}')
     lines = call(folder, "bench", *arguments, succeeds=False).strip().splitlines()
     assert len(lines) == 1, lines
     assert "error" in lines[0] and word in lines[0]
