@@ -8,6 +8,7 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from .errors import DEFAULT_DISTANCE
@@ -265,6 +266,7 @@ def _draw_depth_error(axes, name, points, color, marker):
         axes.annotate(
             point["label"], (point["ms"], point["mean"]), xytext=offset,
             textcoords="offset points", fontsize=7.5, color=color,
+            path_effects=[withStroke(linewidth=2.5, foreground="white")],
         )  # fmt: skip
 
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from . import goals
 from .._files import atomic_path
+from . import goals
 from .errors import DEFAULT_DISTANCE
 from .fields import parse_field
 from .literature import SOURCE, literature
