@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import importlib.util
-import os
 import shlex
 import sys
 import time
@@ -13,7 +12,7 @@ from pathlib import Path
 
 from ..render import MAX_SIZE
 from .document import load_document, merge, new_document, save_document
-from .machine import describe_machine
+from .machine import OtherProcesses, describe_machine
 from .report import write_markdown
 from .sets import SETS, steps
 from .settings import IMAGE_SIZES, PEERS, Settings
@@ -131,10 +130,12 @@ def _measure(parsed):
     start = time.monotonic()
     for number, (kind, what, measure) in enumerate(measurements, 1):
         print(f"{number}/{len(measurements)} {kind} {what}", file=sys.stderr, flush=True)
-        document["measurements"].setdefault(kind, []).append(measure())
+        others = OtherProcesses()
+        record = measure()
+        record["others_cores"] = others.cores()
+        document["measurements"].setdefault(kind, []).append(record)
         run = document["runs"][0]
         run["seconds"] = round(time.monotonic() - start, 1)
-        run["load"].append(round(os.getloadavg()[0], 2))
         run["complete"] = number == len(measurements)
         save_document(document, parsed.output)
     _write(document, parsed.output, not parsed.no_plots)

@@ -40,7 +40,6 @@ def new_document(name, command, machine):
         "commit": machine["commit"],
         "started": time.strftime("%Y-%m-%d %H:%M:%S UTC", time.gmtime()),
         "seconds": 0.0,
-        "load": [],
         "complete": False,
     }
     about = {key: value for key, value in machine.items() if key != "commit"}

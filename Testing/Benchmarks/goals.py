@@ -26,6 +26,9 @@ FASTER_THAN_PAPER = {GPU: (50.0, 10.0), SOFTWARE: (10.0, 1.0)}
 #: cache; and that of VTK's mapper on large volumes.
 MOVED, EXPONENT, BYTES_PER_BLOCK, BYTES_PER_PIXEL, MEMORY = 0.5, 0.15, 3, 40, 0.1
 
+#: Part of the cores that others may keep busy while something is measured.
+QUIET = 0.05
+
 #: Samples from which on a volume counts as large.
 LARGE = 1024**3
 
@@ -66,6 +69,18 @@ def machine_kind(machine):
     if "NVIDIA" in machine["gl"]:
         return GPU
     return SOFTWARE if "llvmpipe" in machine["gl"] and machine["cores"] <= 2 else None
+
+
+def is_busy(machine, record):
+    """Whether others kept the machine so busy that a record's times tell little.
+
+    Parameters
+    ----------
+    machine : dict
+    record : dict
+        With ``others_cores``, the cores that were busy for others (None where unknown).
+    """
+    return (record["others_cores"] or 0.0) > QUIET * machine["cores"]
 
 
 def _at_most(what, value, limit, show, note=""):

@@ -8,6 +8,7 @@ import os
 import platform
 import shutil
 import subprocess
+import time
 from pathlib import Path
 
 from vtkmodules.vtkCommonCore import vtkSMPTools, vtkVersion
@@ -17,6 +18,7 @@ import progiso
 
 _STATUS = Path("/proc/self/status")
 _CLEAR_REFS = Path("/proc/self/clear_refs")
+_PROCESSORS = Path("/proc/stat")
 _RESET_PEAK = "5"  # to clear_refs: the peak of the resident set starts anew
 
 
@@ -155,3 +157,38 @@ def _status(key):
     """A figure of this process, in bytes."""
     lines = _STATUS.read_text(encoding="ascii").splitlines()
     return next(int(line.split()[1]) * 1024 for line in lines if line.startswith(f"{key}:"))
+
+
+class OtherProcesses:
+    """How busy others keep the machine from now on: what is timed meanwhile is only as good.
+
+    Counted are other processes, and what a virtual machine's host takes from it.
+
+    Examples
+    --------
+    >>> OtherProcesses().cores() is None or OtherProcesses().cores() >= 0
+    True
+    """
+
+    def __init__(self):
+        self._start, self._before = time.monotonic(), _seconds_of_others()
+
+    def cores(self):
+        """Cores that were busy for others, in the mean; None where the system does not tell."""
+        elapsed = time.monotonic() - self._start
+        if self._before is None or elapsed <= 0:
+            return None
+        # both are counted in ticks, which need not fall together
+        return max(0.0, (_seconds_of_others() - self._before) / elapsed)
+
+
+def _seconds_of_others():
+    """Processor time of all but this process and its children; None where it cannot be read."""
+    try:
+        line = _PROCESSORS.read_text(encoding="ascii").splitlines()[0]
+    except OSError:
+        return None
+    user, nice, system, _idle, _waiting, interrupts, soft, stolen = map(int, line.split()[1:9])
+    busy = user + nice + system + interrupts + soft + stolen
+    own = os.times()
+    return busy / os.sysconf("SC_CLK_TCK") - sum(own[:4])

@@ -55,7 +55,7 @@ def markdown(document, plots):
         if records:
             body += section(report, records)
             body += [line for name in plots.get(kind, []) for line in (f"![]({name})", "")]
-    lines = [*_heading(document), *_summary(report.verdicts), *body]
+    lines = [*_heading(document), *_summary(report.machine, report.verdicts), *body]
     return "\n".join(lines).rstrip() + "\n"
 
 
@@ -69,7 +69,7 @@ class _Report:
     def goal(self, record, *verdicts):
         """A cell that judges figures; None among the verdicts are figures without a goal."""
         found = [verdict for verdict in verdicts if verdict is not None]
-        self.verdicts += [(_of(record), verdict) for verdict in found]
+        self.verdicts += [(record, verdict) for verdict in found]
         return "; ".join(map(str, found)) or _NO_GOAL
 
 
@@ -90,9 +90,9 @@ def _heading(document):
         f"its filters on {machine['smp']}; Python {machine['python']}; ProgIso "
         f"{machine['progiso']}.",
         "",
-        "Times are wall clock from the call of `Render()` to the end of the GPU's work. Processes "
-        "that ran or waited to run, this one included: *load*.",
+        "Times are wall clock from the call of `Render()` to the end of the GPU's work.",
         "",
+        *_warning(document),
     ]
     rows = [
         [
@@ -100,29 +100,44 @@ def _heading(document):
             run["commit"] or "–",
             run["started"],
             f"{number(run['seconds'])} s" + ("" if run["complete"] else ", not complete"),
-            f"{number(min(run['load']))} to {number(max(run['load']))}",
         ]
         for run in document["runs"]
     ]
-    return lines + table(["command", "commit", "started", "took", "load"], rows)
+    return lines + table(["command", "commit", "started", "took"], rows)
 
 
-def _summary(verdicts):
+def _warning(document):
+    """Say when figures cannot be relied on."""
+    records = [r for records in document["measurements"].values() for r in records]
+    busy = [r["others_cores"] for r in records if goals.is_busy(document["machine"], r)]
+    if not busy:
+        return []
+    return [
+        f"**The machine was busy**: other processes took up to {number(max(busy))} of its "
+        f"{document['machine']['cores']} cores during {len(busy)} of {len(records)} "
+        "measurements. Their times are too long, and not all by the same factor: do not compare "
+        "them, nor rely on what is judged by them. Measure again on a quiet machine.",
+        "",
+    ]
+
+
+def _summary(machine, verdicts):
     if not verdicts:
         return []
     met = sum(verdict.met for _, verdict in verdicts)
     rows = [
         [
-            what,
+            _of(record),
             verdict.what,
             verdict.measured,
             verdict.goal,
             "met" if verdict.met else "**not met**",
+            number(record["others_cores"]) + (" (busy)" if goals.is_busy(machine, record) else ""),
         ]
-        for what, verdict in verdicts
+        for record, verdict in verdicts
     ]
     heading = [f"## Goals: {met} of {len(verdicts)} met", ""]
-    return heading + table(["of", "what", "measured", "goal", ""], rows)
+    return heading + table(["of", "what", "measured", "goal", "", "others' cores"], rows)
 
 
 # ---- side by side

@@ -278,6 +278,21 @@ def test_goals_are_computed(results):
         assert f"## Goals: {1 + met} of 2 met" in text
 
 
+def test_busy_machines_are_told(results):
+    """Where other processes took the processor the figures are not to be relied on, and the report says so."""
+    document = load_document(results("paper") / "results.json")
+    records = [record for records in document["measurements"].values() for record in records]
+    assert all(record["others_cores"] is None or record["others_cores"] >= 0 for record in records)
+    document["machine"]["cores"] = 2
+    for record in records:
+        record["others_cores"] = 0.02
+    assert "busy" not in markdown(document, {})
+    records[0]["others_cores"] = 1.3
+    text = markdown(document, {})
+    assert "**The machine was busy**: other processes took up to 1.3 of its 2 cores during 1 of 2" in text
+    assert text.count("1.3 (busy)") == 1
+
+
 def test_goals_by_machine():
     gpu, software = {"gl": GPU, "cores": 16}, {"gl": "llvmpipe (LLVM 15)", "cores": 2}
     assert goals.complete_image(gpu, (1280, 720), 1024**3, 9.9).met
