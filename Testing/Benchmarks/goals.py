@@ -47,15 +47,15 @@ class Verdict:
     measured, goal : str
         The figure, and what it shall be.
     met : bool
+    timed : bool, default: True
+        Whether times are judged, which other processes disturb.
     """
 
     what: str
     measured: str
     goal: str
     met: bool
-
-    def __str__(self):
-        return f"{self.goal}: {'met' if self.met else '**not met**'}"
+    timed: bool = True
 
 
 def machine_kind(machine):
@@ -83,8 +83,8 @@ def is_busy(machine, record):
     return (record["others_cores"] or 0.0) > QUIET * machine["cores"]
 
 
-def _at_most(what, value, limit, show, note=""):
-    return Verdict(what, show(value), f"≤ {show(limit)}{note}", value <= limit)
+def _at_most(what, value, limit, show, note="", timed=True):
+    return Verdict(what, show(value), f"≤ {show(limit)}{note}", value <= limit, timed)
 
 
 def _on_gpu(machine, size):
@@ -132,14 +132,14 @@ def per_block(value):
     """Bytes of GPU memory that a block more takes beside its payload; None without a figure."""
     if value is None:
         return None
-    return _at_most("GPU bytes per block", value, BYTES_PER_BLOCK, number)
+    return _at_most("GPU bytes per block", value, BYTES_PER_BLOCK, number, timed=False)
 
 
 def per_pixel(value):
     """Bytes of GPU memory that a pixel more takes; None without a figure."""
     if value is None:
         return None
-    return _at_most("GPU bytes per pixel", value, BYTES_PER_PIXEL, number)
+    return _at_most("GPU bytes per pixel", value, BYTES_PER_PIXEL, number, timed=False)
 
 
 def beside_payload(memory):
@@ -147,12 +147,12 @@ def beside_payload(memory):
     limit = BYTES_PER_BLOCK * memory["blocks"] + BYTES_PER_PIXEL * memory["pixels"]
     note = f" ({BYTES_PER_BLOCK} a block, {BYTES_PER_PIXEL} a pixel)"
     what = "GPU memory beside payload and cache"
-    return _at_most(what, memory["other_max"], limit, bytes_, note)
+    return _at_most(what, memory["other_max"], limit, bytes_, note, timed=False)
 
 
 def within_budget(total, budget):
     """Total GPU memory against the budget that was set."""
-    return _at_most("GPU memory", total, budget, bytes_)
+    return _at_most("GPU memory", total, budget, bytes_, timed=False)
 
 
 def against_mapper(machine, size, field, voxels, ours_ms, mapper_ms):
@@ -172,7 +172,7 @@ def memory_against_mapper(machine, voxels, ours_bytes, mapper_bytes):
         return None
     limit = MEMORY * mapper_bytes
     goal = f"≤ a tenth of VTK's mapper ({bytes_(limit)})"
-    return Verdict("GPU memory", bytes_(ours_bytes), goal, ours_bytes <= limit)
+    return Verdict("GPU memory", bytes_(ours_bytes), goal, ours_bytes <= limit, timed=False)
 
 
 def against_paper(machine, field, size, mean_ms):

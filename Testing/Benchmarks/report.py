@@ -18,6 +18,7 @@ from .volume_mapper import VolumeMapper
 FILE = "results.md"
 
 _NO_GOAL = ""
+_MET, _NOT_JUDGED = "met", "*not judged, busy*"
 
 
 def write_markdown(document, folder, plots=None):
@@ -55,7 +56,7 @@ def markdown(document, plots):
         if records:
             body += section(report, records)
             body += [line for name in plots.get(kind, []) for line in (f"![]({name})", "")]
-    lines = [*_heading(document), *_summary(report.machine, report.verdicts), *body]
+    lines = [*_heading(document), *_summary(report), *body]
     return "\n".join(lines).rstrip() + "\n"
 
 
@@ -70,7 +71,14 @@ class _Report:
         """A cell that judges figures; None among the verdicts are figures without a goal."""
         found = [verdict for verdict in verdicts if verdict is not None]
         self.verdicts += [(record, verdict) for verdict in found]
-        return "; ".join(map(str, found)) or _NO_GOAL
+        texts = (f"{verdict.goal}: {self.judge(record, verdict)}" for verdict in found)
+        return "; ".join(texts) or _NO_GOAL
+
+    def judge(self, record, verdict):
+        """What is said of a goal: times that other processes disturbed are not judged."""
+        if verdict.timed and goals.is_busy(self.machine, record):
+            return _NOT_JUDGED
+        return _MET if verdict.met else "**not met**"
 
 
 def _of(record):
@@ -116,27 +124,29 @@ def _warning(document):
         f"**The machine was busy**: other processes took up to {number(max(busy))} of its "
         f"{document['machine']['cores']} cores during {len(busy)} of {len(records)} "
         "measurements. Their times are too long, and not all by the same factor: do not compare "
-        "them, nor rely on what is judged by them. Measure again on a quiet machine.",
+        "them. No goal is judged by them; measure again on a quiet machine.",
         "",
     ]
 
 
-def _summary(machine, verdicts):
-    if not verdicts:
+def _summary(report):
+    if not report.verdicts:
         return []
-    met = sum(verdict.met for _, verdict in verdicts)
+    judged = [report.judge(record, verdict) for record, verdict in report.verdicts]
+    met, left = judged.count(_MET), judged.count(_NOT_JUDGED)
     rows = [
         [
             _of(record),
             verdict.what,
             verdict.measured,
             verdict.goal,
-            "met" if verdict.met else "**not met**",
-            number(record["others_cores"]) + (" (busy)" if goals.is_busy(machine, record) else ""),
+            judgement,
+            number(record["others_cores"]),
         ]
-        for record, verdict in verdicts
+        for (record, verdict), judgement in zip(report.verdicts, judged)
     ]
-    heading = [f"## Goals: {met} of {len(verdicts)} met", ""]
+    unjudged = f", {left} not judged" if left else ""
+    heading = [f"## Goals: {met} of {len(judged) - left} met{unjudged}", ""]
     return heading + table(["of", "what", "measured", "goal", "", "others' cores"], rows)
 
 
