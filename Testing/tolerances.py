@@ -62,3 +62,10 @@ DEPTH_BUFFER = 2.0**-22
 #: Light on a sampled sphere of 18 voxels' radius against that on the sphere: grey levels. Normals taken within cells are
 #: off by up to half a voxel in 18, 7 levels, at every face; normals that jump at blocks are worse.
 SHADING_LEVELS = 4
+
+# --- benchmarks -------------------------------------------------------------------------------------------------------------------
+
+#: Depths of VTK's pictures, in voxels: a plane's mesh lies on it but for single precision; the volume mapper's samples come from texture
+#: hardware that interpolates in steps of 1/256 of a voxel.
+MESH_DEPTH_VOXELS = 1e-3
+TEXTURE_VOXELS = 1e-2

@@ -13,6 +13,7 @@ import numpy as np
 import progiso
 
 from ._files import atomic_path, check_output
+from .benchmarks.command import add_bench
 from .data import GENERATORS, SCANS, fetch
 from .io import COMPRESSED_SUFFIXES, PLAIN_SUFFIXES
 from .progress import progress_bar
@@ -76,6 +77,8 @@ def _parser():
     _add_info(commands)
     _add_render(commands)
     _add_data(commands)
+    bench = _add_command(commands, "bench", None, "measure time, memory and error beside VTK's own")
+    add_bench(bench, _size)
     return parser
 
 

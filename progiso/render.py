@@ -135,7 +135,7 @@ def render(
     _check_opengl(window)
     mapper = volume.GetMapper()
     result = RenderResult(
-        _pixels(window, width, height), depth(mapper), statistics(mapper, renderer)
+        window_pixels(window, width, height), depth(mapper), statistics(mapper, renderer)
     )
     window.Finalize()
     return result
@@ -194,8 +194,14 @@ def _check_opengl(window):
         )
 
 
-def _pixels(window, width, height):
-    """The window's colours, top row first."""
+def window_pixels(window, width, height):
+    """Colours of a window that has been rendered.
+
+    Returns
+    -------
+    numpy.ndarray of uint8, shape (height, width, 3)
+        Row 0 is the top.
+    """
     pixels = vtkUnsignedCharArray()
     window.GetPixelData(0, 0, width - 1, height - 1, 1, pixels, 0)
     return np.ascontiguousarray(vtk_to_numpy(pixels).reshape(height, width, 3)[::-1])

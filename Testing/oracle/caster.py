@@ -175,38 +175,49 @@ def _unit(vector):
 
 
 class _Grid:
-    """The samples less the isovalue, flat, and which cells can matter to a ray that started inside or outside."""
+    """The samples, flat, and which cells can matter to a ray that started inside or outside.
+
+    What else a ray has to know of a cell is made when it gets there, so that a volume takes little more memory than its samples.
+    """
 
     def __init__(self, values, isovalue, slack):
         if values.ndim != 3 or min(values.shape) < 2:
             raise ValueError(f"at least two samples are needed along each axis, got shape {values.shape}")
-        if not np.isfinite(values).all():
+        if not all(np.isfinite(values[z]).all() for z in range(len(values))):
             raise ValueError("the volume holds values that are not finite")
         self.size = np.array(values.shape[::-1])
         self.strides = np.array([1, self.size[0], self.size[0] * self.size[1]])
-        excess = values.astype(float) - isovalue
+        self.samples = values.ravel()
+        self.isovalue = isovalue
+        self.slack = slack
+        self.offsets = np.array([sum(d for d, bit in zip(self.strides, name) if bit == "1") for name in _CORNERS])
+        # Cells are stored like samples, so that one index finds both.
+        matters = np.zeros(values.shape, np.uint8)
+        for z in range(0, len(values) - 1, _SLAB):
+            cells = self._matters(values[z : z + _SLAB + 1])
+            matters[z : z + len(cells), :-1, :-1] = cells
+        self.matters = matters.ravel()
+
+    def _matters(self, values):
+        """Mark the cells between samples [z, y, x] that can matter."""
+        excess = values.astype(float) - self.isovalue
         low, high = _cell_extremes(excess, np.minimum), _cell_extremes(excess, np.maximum)
-        largest = np.maximum(np.abs(low), np.abs(high))
-        error = slack.value * FLOAT32_ULP * largest + slack.position * (high - low)
+        error = self._error(low, high)
         # Bit 0: a ray that started inside can get out here. Bit 1: one that started outside can get in.
         matters = (low <= error).astype(np.uint8) | ((high >= -error).astype(np.uint8) << 1)
         # Bits 2 and 3: the same without any error. A cell at or above the isovalue throughout is not left for rounding's sake.
-        matters |= ((low < 0).astype(np.uint8) << 2) | ((high >= 0).astype(np.uint8) << 3)
-        self.excess = excess.ravel()
-        self.error = self._pad(error)
-        self.matters = self._pad(matters)
+        return matters | ((low < 0).astype(np.uint8) << 2) | ((high >= 0).astype(np.uint8) << 3)
 
-    def _pad(self, cells):
-        """Store cells like samples, so that one index finds both."""
-        padded = np.zeros(tuple(self.size[::-1]), cells.dtype)
-        padded[:-1, :-1, :-1] = cells
-        return padded.ravel()
+    def _error(self, low, high):
+        """Return what the slack allows in cells whose corners exceed the isovalue by `low` to `high`."""
+        largest = np.maximum(np.abs(low), np.abs(high))
+        return self.slack.value * FLOAT32_ULP * largest + self.slack.position * (high - low)
 
-    def coefficients(self, index):
-        """Return the trilinear polynomials of cells, keyed by their variables."""
-        dx, dy, dz = self.strides
-        c = {name: self.excess[index + sum(d for d, bit in zip((dx, dy, dz), name) if bit == "1")] for name in _CORNERS}
-        return {
+    def cells(self, index):
+        """Return the trilinear polynomials of cells, keyed by their variables, and the error that the slack allows in them."""
+        excess = self.samples[index + self.offsets[:, None]].astype(float) - self.isovalue
+        c = dict(zip(_CORNERS, excess))
+        polynomials = {
             "": c["000"],
             "x": c["100"] - c["000"],
             "y": c["010"] - c["000"],
@@ -216,9 +227,13 @@ class _Grid:
             "yz": c["011"] - c["010"] - c["001"] + c["000"],
             "xyz": (c["111"] - c["110"] - c["101"] + c["100"]) - (c["011"] - c["010"] - c["001"] + c["000"]),
         }
+        return polynomials, self._error(excess.min(axis=0), excess.max(axis=0))
 
 
 _CORNERS = [f"{i:03b}" for i in range(8)]
+
+#: Layers of cells that are looked at together while a volume is prepared.
+_SLAB = 16
 
 
 def _cell_extremes(samples, pick):
@@ -289,8 +304,8 @@ class _Walk:
 
     def _first_side(self):
         """Return +1 for rays that start inside and -1 outside; where rounding decides, any outcome is possible."""
-        polynomial = _along(self.grid, self.index, self.start - self._corner(), np.zeros_like(self.start))
-        excess, error = polynomial[0], self.grid.error[self.index]
+        cells, error = self.grid.cells(self.index)
+        excess = _along(cells, self.start - self._corner(), np.zeros_like(self.start))[0]
         self.unsure = (np.abs(excess) <= error) & (error > 0)
         self.hits[0, self.unsure] = self.enter[self.unsure]
         return np.where(excess >= 0, 1.0, -1.0)
@@ -331,10 +346,10 @@ class _Walk:
         a = np.clip(self.start[:, rays] + near * self.step[:, rays] - corner, 0, 1)
         b = np.clip(self.start[:, rays] + far * self.step[:, rays] - corner, 0, 1)
         side = self.side[rays]
-        cubic = _along(self.grid, self.index[rays], a, b - a) * side
+        cells, error = self.grid.cells(self.index[rays])
+        cubic = _along(cells, a, b - a) * side
         knots = _monotone_knots(cubic)
         values = _evaluate(cubic[:, None, :], knots)
-        error = self.grid.error[self.index[rays]]
         for row, threshold in enumerate((error, np.zeros_like(error), -error)):
             # Equal to the isovalue is inside: reached from outside, not left from inside.
             crossed = np.where((side > 0) & (threshold == 0), values < threshold, values <= threshold)
@@ -349,10 +364,9 @@ class _Walk:
 # --- the cubic along a ray --------------------------------------------------------------------------------------------------
 
 
-def _along(grid, index, a, b):
-    """Return coefficients [4, n] of the interpolant at ``a + s * b`` (in the cell, 0 to 1), from the constant up."""
+def _along(c, a, b):
+    """Return coefficients [4, n] of the interpolants `c` at ``a + s * b`` (in the cell, 0 to 1), from the constant up."""
     (ax, ay, az), (bx, by, bz) = a, b
-    c = grid.coefficients(index)
     constant = (
         c[""] + c["x"] * ax + c["y"] * ay + c["z"] * az
         + c["xy"] * ax * ay + c["xz"] * ax * az + c["yz"] * ay * az + c["xyz"] * ax * ay * az

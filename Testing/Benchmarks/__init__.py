@@ -1,0 +1,8 @@
+"""Benchmarks: what an image costs in time, memory and error, beside what users would pick instead.
+
+``python -m progiso bench SET`` measures and writes ``results.json``, ``results.md`` and plots;
+``python -m progiso bench report`` makes the last two of the first. What is measured is said in the
+module that measures it: `protocol` (the paper's evaluation), `peers` (side by side), `latency`
+(first images and small moves), `errors` (depth error against run time), `scaling` and `budget`.
+Every time is wall clock from the call of ``Render()`` to the end of the GPU's work.
+"""

@@ -1,0 +1,87 @@
+"""ProgIso's mapper in a view: the one place that the benchmarks use its settings in."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..isosurface import make_isosurface
+from ..statistics import depth, statistics
+from .view import View
+
+#: Beginnings of the names of the buffers that make up the block cache.
+CACHE_PREFIX = "cache_"
+
+
+class Isosurface(View):
+    """A compressed volume, rendered by ProgIso.
+
+    Parameters
+    ----------
+    image : vtkmodules.vtkCommonDataModel.vtkImageData
+        A compressed volume.
+    isovalue : float
+    size : tuple of int
+        Width and height in pixels.
+    speculation : bool, default: True
+        Whether rays test several blocks ahead.
+    detailed : bool, default: False
+        Whether stages are timed and distinct blocks counted, which takes time.
+    memory_budget : int, default: 0
+        Bytes of GPU memory; 0 for the mapper's own choice.
+    """
+
+    label = "ProgIso"
+
+    def __init__(self, image, isovalue, size, speculation=True, detailed=False, memory_budget=0):
+        # SHIM until make_isosurface has it: memory_budget=memory_budget
+        prop = make_isosurface(image, isovalue, speculation=speculation, cache_limit=memory_budget)
+        super().__init__(prop, size)
+        self.mapper = prop.GetMapper()
+        # SHIM until the mapper has it: self.mapper.SetDetailedStatistics(detailed)
+
+    def set_isovalue(self, isovalue):
+        """Show another isovalue from the next render on."""
+        self.prop.GetProperty().GetIsoSurfaceValues().SetValue(0, isovalue)
+
+    def set_passes_per_render(self, count):
+        """Show the image after every `count` passes; 0 for complete images only."""
+        self.mapper.SetMaximumPassesPerRender(count)
+
+    def converged(self):
+        """Whether the last image is complete."""
+        return self.mapper.GetConverged()
+
+    def statistics(self):
+        """`progiso.statistics` of the last image."""
+        return statistics(self.mapper, self.renderer)
+
+    def depth(self):
+        """`progiso.depth` of the last image."""
+        return depth(self.mapper)
+
+    def depth_resolution(self):
+        """Resolution of `depth` in world units: that of float32 where it is largest."""
+        distances = self.depth()
+        return float(np.spacing(distances[np.isfinite(distances)].max(initial=0.0)))
+
+
+def cache_bytes(memory):
+    """Bytes of the block cache in ``statistics()["memory"]``."""
+    buffers = memory["buffers"].items()
+    return sum(count for name, count in buffers if name.startswith(CACHE_PREFIX))
+
+
+def other_bytes(memory):
+    """Bytes beside the compressed stream and the block cache in ``statistics()["memory"]``."""
+    return memory["total"] - memory["compressed"] - cache_bytes(memory)
+
+
+def stage_times(about):
+    """Milliseconds of every stage over the passes of an image, of a ``detailed`` view's statistics.
+
+    Returns
+    -------
+    dict
+        {stage: milliseconds}.
+    """
+    return about.get("stage_ms", {})  # SHIM until it is there: about["stage_ms"]

@@ -1,0 +1,121 @@
+"""The named sets: which measurements they are made of, and on which fields."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import partial
+
+from .budget import measure_budget
+from .errors import measure_errors
+from .fields import parse_field
+from .latency import measure_latency
+from .peers import measure_peers
+from .protocol import measure_protocol
+from .scaling import measure_image_scaling, measure_volume_scaling
+from .settings import PEERS
+
+SCANS = ("ct-cranium-r8", "mri-brain-r8")
+SMALL = ("marschner-lobb-128-k6-r4", "gyroid-256-k6-r2")
+LARGE = ("gyroid-512-k12-r4", "gyroid-1024-k24-r4", "gyroid-1024-k24-r2", "gyroid-1024-k6-r2")
+QUICK = (*SCANS, SMALL[0])
+
+
+@dataclass(frozen=True)
+class Defaults:
+    """What a set does unless told otherwise.
+
+    Attributes
+    ----------
+    description : str
+    fields : tuple of str
+    isovalues : int or str
+        See `settings.Settings`.
+    positions : int
+        Of the orbit.
+    """
+
+    description: str
+    fields: tuple
+    isovalues: object
+    positions: int
+
+
+SETS = {
+    "quick": Defaults("a bit of everything, within minutes without a GPU", QUICK, 2, 2),
+    "paper": Defaults(
+        "the paper's protocol, first images and small moves", (*SCANS, *SMALL, *LARGE), 100, 10
+    ),
+    "scaling": Defaults("time over image and volume size", (SMALL[1],), PEERS, 10),
+    "peers": Defaults(
+        "beside VTK's isosurface mapper and FlyingEdges", (*SCANS, *SMALL, *LARGE), PEERS, 10
+    ),
+    "errors": Defaults("depth error against run time", (*SCANS, *SMALL), PEERS, 10),
+    "budget": Defaults("time and memory within memory budgets", (LARGE[0],), PEERS, 10),
+}
+
+#: What `quick` leaves out of the longer series.
+_QUICK_IMAGES = ((640, 360), (1280, 720))
+_QUICK_VOLUMES = ((64,) * 3, (128,) * 3, (256,) * 3)
+_QUICK_RATES, _QUICK_DISTANCES = (2.0, 4.0, 8.0, 16.0), (0.25, 0.5, 1.0)
+
+
+def steps(name, fields, settings):
+    """The measurements of a set, in order.
+
+    Parameters
+    ----------
+    name : str
+        One of `SETS`.
+    fields : sequence of str
+        Names of the fields to measure.
+    settings : settings.Settings
+
+    Returns
+    -------
+    list of (str, str, callable)
+        Kind of the record, what it is of, and the function that makes it.
+    """
+    return _STEPS[name]([parse_field(field) for field in fields], settings)
+
+
+def _each(kind, measure, fields, *arguments):
+    return [(kind, field.name, partial(measure, field, *arguments)) for field in fields]
+
+
+def _paper(fields, settings):
+    by_field = zip(
+        _each("protocol", measure_protocol, fields, settings),
+        _each("latency", measure_latency, fields, settings),
+    )
+    return [step for pair in by_field for step in pair]
+
+
+def _scaling(fields, settings):
+    volumes = [
+        ("volume_scaling", "same surface", partial(measure_volume_scaling, False, settings)),
+        ("volume_scaling", "growing surface", partial(measure_volume_scaling, True, settings)),
+    ]
+    return _each("image_scaling", measure_image_scaling, fields, settings) + volumes
+
+
+def _quick(fields, settings):
+    fixed = replace(settings, isovalues=PEERS, images=_QUICK_IMAGES)
+    small = replace(fixed, size=tuple(max(1, n // 2) for n in settings.size))
+    volumes = partial(measure_volume_scaling, False, fixed, _QUICK_VOLUMES)
+    return [
+        *_each("peers", measure_peers, fields, fixed),
+        *_paper(fields, settings),
+        *_each("errors", measure_errors, fields, small, _QUICK_RATES, _QUICK_DISTANCES),
+        *_each("image_scaling", measure_image_scaling, fields[-1:], fixed),
+        ("volume_scaling", "same surface", volumes),
+    ]
+
+
+_STEPS = {
+    "quick": _quick,
+    "paper": _paper,
+    "scaling": _scaling,
+    "peers": partial(_each, "peers", measure_peers),
+    "errors": partial(_each, "errors", measure_errors),
+    "budget": partial(_each, "budget", measure_budget),
+}

@@ -1,0 +1,66 @@
+"""What was asked for, shared by all measurements."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional
+
+from ..camera import orbit_camera
+
+#: Widths and heights that the scaling with image size goes through.
+IMAGE_SIZES = ((640, 360), (1280, 720), (1920, 1080), (3840, 2160))
+
+#: Stands for a field's fixed isovalues instead of a number of random ones.
+PEERS = "peers"
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Options of a run.
+
+    Attributes
+    ----------
+    size : tuple of int
+        Width and height of the images in pixels.
+    isovalues : int or str
+        How many random ones, or `PEERS` for the fixed ones.
+    positions : int
+        Of the orbit.
+    repeat : int
+        How often every image is timed.
+    seed : int
+        Of the random isovalues.
+    largest : int, optional
+        Largest side of the volumes in the scaling with volume size.
+    images : tuple of tuple of int
+        Widths and heights in the scaling with image size.
+    """
+
+    size: tuple
+    isovalues: object
+    positions: int
+    repeat: int = 1
+    seed: int = 0
+    largest: Optional[int] = None
+    images: tuple = IMAGE_SIZES
+
+    def isovalues_of(self, field):
+        """The isovalues that a field is rendered at, a list of float."""
+        if self.isovalues == PEERS:
+            return list(field.isovalues)
+        return field.random_isovalues(self.isovalues, self.seed)
+
+    def cameras(self, image):
+        """The orbit's cameras around an image, a list of `progiso.Camera`."""
+        return [orbit_camera(image, i, self.positions) for i in range(self.positions)]
+
+    def heading(self, field):
+        """What every record begins with: the field and how it was seen."""
+        return {
+            "field": field.name,
+            "size": list(self.size),
+            "isovalues": self.isovalues_of(field),
+            "fixed_isovalues": self.isovalues == PEERS,
+            "positions": self.positions,
+            "repeat": self.repeat,
+        }

@@ -1,0 +1,32 @@
+"""What is said of a series of times."""
+
+from __future__ import annotations
+
+import statistics
+
+
+def summary(milliseconds):
+    """Median, mean and extremes of times.
+
+    Parameters
+    ----------
+    milliseconds : sequence of float
+        At least one.
+
+    Returns
+    -------
+    dict
+        ``count``, ``mean``, ``median``, ``min`` and ``max``.
+
+    Examples
+    --------
+    >>> summary([1.0, 2.0, 6.0])["mean"]
+    3.0
+    """
+    return {
+        "count": len(milliseconds),
+        "mean": statistics.fmean(milliseconds),
+        "median": statistics.median(milliseconds),
+        "min": min(milliseconds),
+        "max": max(milliseconds),
+    }

@@ -1,0 +1,104 @@
+"""An off-screen window with one prop, rendered by the clock."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from time import perf_counter
+
+import numpy as np
+from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
+
+from .._vtk import vtk_errors
+
+
+class View:
+    """A prop alone on black in a window of its own.
+
+    Parameters
+    ----------
+    prop : vtkmodules.vtkRenderingCore.vtkProp3D
+        What is shown.
+    size : tuple of int
+        Width and height in pixels.
+    """
+
+    def __init__(self, prop, size):
+        self.prop = prop
+        self.size = tuple(size)
+        self.renderer = vtkRenderer()
+        self.renderer.AddViewProp(prop)
+        self.window = vtkRenderWindow()
+        self.window.SetOffScreenRendering(True)
+        self.window.SetMultiSamples(0)
+        self.window.SetSize(*self.size)
+        self.window.AddRenderer(self.renderer)
+
+    def look(self, camera):
+        """Move to a `progiso.Camera`, its clipping range around the prop."""
+        camera.apply(self.renderer.GetActiveCamera())
+        self.renderer.ResetCameraClippingRange()
+
+    def render(self):
+        """Render, and wait until the GPU has finished.
+
+        Returns
+        -------
+        float
+            Milliseconds of wall clock.
+
+        Raises
+        ------
+        RuntimeError
+            With VTK's message, when it reported an error.
+        """
+        with vtk_errors("cannot render"):
+            start = perf_counter()
+            self.window.Render()
+            self.window.WaitForCompletion()
+            elapsed = perf_counter() - start
+        return 1e3 * elapsed
+
+    def render_from(self, camera):
+        """Look, then render; milliseconds of wall clock of the latter."""
+        self.look(camera)
+        return self.render()
+
+    def close(self):
+        """Give back the window and all that it holds on the GPU."""
+        self.window.Finalize()
+
+
+def opposite(camera):
+    """The camera on the other side of the focal point.
+
+    Parameters
+    ----------
+    camera : progiso.Camera
+
+    Returns
+    -------
+    progiso.Camera
+    """
+    position = tuple(2 * f - p for f, p in zip(camera.focal_point, camera.position))
+    return replace(camera, position=position)
+
+
+def turned(camera, degrees):
+    """The camera moved sideways about the focal point, on the great circle to its right.
+
+    Parameters
+    ----------
+    camera : progiso.Camera
+    degrees : float
+
+    Returns
+    -------
+    progiso.Camera
+    """
+    offset = np.subtract(camera.position, camera.focal_point)
+    right = np.cross(camera.view_up, offset)
+    right *= np.linalg.norm(offset) / np.linalg.norm(right)
+    angle = math.radians(degrees)
+    position = camera.focal_point + math.cos(angle) * offset + math.sin(angle) * right
+    return replace(camera, position=tuple(position.tolist()))
