@@ -33,11 +33,12 @@ class Isosurface(View):
     label = "ProgIso"
 
     def __init__(self, image, isovalue, size, speculation=True, detailed=False, memory_budget=0):
-        # SHIM until make_isosurface has it: memory_budget=memory_budget
-        prop = make_isosurface(image, isovalue, speculation=speculation, cache_limit=memory_budget)
+        prop = make_isosurface(
+            image, isovalue, speculation=speculation, memory_budget=memory_budget
+        )
         super().__init__(prop, size)
         self.mapper = prop.GetMapper()
-        # SHIM until the mapper has it: self.mapper.SetDetailedStatistics(detailed)
+        self.mapper.SetDetailedStatistics(detailed)
 
     def set_isovalue(self, isovalue):
         """Show another isovalue from the next render on."""
@@ -84,4 +85,4 @@ def stage_times(about):
     dict
         {stage: milliseconds}.
     """
-    return about.get("stage_ms", {})  # SHIM until it is there: about["stage_ms"]
+    return about["stage_ms"]
