@@ -136,11 +136,12 @@ std::int64_t ProgressivePipeline::MaximumSlots() const
   return least >= this->MinimumSlots() ? least : 0;
 }
 
-bool ProgressivePipeline::FailForWantOf(std::int64_t bytes)
+std::int64_t ProgressivePipeline::GetLeastMemoryBudget() const
 {
-  return this->Gpu.Fail("the memory budget of " + Bytes(this->Budget) +
-    " is too small: this volume at this image size needs at least " + Bytes(bytes) +
-    " beside the compressed stream");
+  const std::int64_t cached = this->BytesWith(this->WithSlots(this->MinimumSlots()));
+  return this->Settings.DecodeWholeVolume
+    ? std::min(cached, this->BytesWith(this->WholeVolume()))
+    : cached;
 }
 
 //------------------------------------------------------------------------------
@@ -338,9 +339,9 @@ bool ProgressivePipeline::MakeRoom(bool newImage)
   const std::int64_t most = this->MaximumSlots();
   if (cached && most == 0)
   {
-    const std::int64_t cache = this->BytesWith(this->WithSlots(this->MinimumSlots()));
-    return this->FailForWantOf(
-      this->Settings.DecodeWholeVolume ? std::min(cache, this->BytesWith(whole)) : cache);
+    return this->Gpu.Fail("the memory budget of " + Bytes(this->Budget) +
+      " is too small: this volume at this image size needs at least " +
+      Bytes(this->GetLeastMemoryBudget()) + " beside the compressed stream");
   }
   const bool reload = !this->VolumeLoaded || cached != this->Extent.Cached;
   std::int64_t slots = cached ? std::min(this->Extent.Slots, most) : whole.Slots;

@@ -72,7 +72,10 @@ public:
 
   bool GetConverged() const { return this->Started && this->Remaining == 0; }
   double GetCompletedFraction() const;
+  ///@{ Bytes: the budget in force, and the least that this scene can work with.
   std::int64_t GetMemoryBudget() const { return this->Budget; }
+  std::int64_t GetLeastMemoryBudget() const;
+  ///@}
   const std::vector<TimedPass>& GetPasses() const { return this->Passes; }
   PipelineResources& GetResources() { return this->Gpu; }
   const SceneBlock& GetScene() const { return this->Scene; }
@@ -89,7 +92,6 @@ private:
   void FillInScene(const SceneBlock& scene);
   bool MakeRoom(bool newImage);
   bool MakeCache(std::int64_t most, bool newImage);
-  bool FailForWantOf(std::int64_t bytes);
   std::int64_t BytesWith(const PipelineExtent& extent) const;
   PipelineExtent WithSlots(std::int64_t slots) const;
   PipelineExtent WholeVolume() const;

@@ -444,6 +444,7 @@ void vtkProgressiveIsosurfaceMapper::Internals::FillStatistics()
     }
   }
   statistics->MemoryBudget = this->Pipeline.GetMemoryBudget();
+  statistics->LeastMemoryBudget = this->Pipeline.GetLeastMemoryBudget();
   statistics->TotalMilliseconds = this->TotalMilliseconds;
   statistics->Converged = this->Pipeline.GetConverged();
   statistics->GLDescription = PipelineResources::GetDescription();

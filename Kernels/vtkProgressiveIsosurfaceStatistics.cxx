@@ -28,6 +28,7 @@ void vtkProgressiveIsosurfaceStatistics::PrintSelf(ostream& os, vtkIndent indent
   os << indent << "Passes: " << this->GetNumberOfPasses() << "\n";
   os << indent << "TotalMilliseconds: " << this->TotalMilliseconds << "\n";
   os << indent << "MemoryBudget: " << this->MemoryBudget << "\n";
+  os << indent << "LeastMemoryBudget: " << this->LeastMemoryBudget << "\n";
   os << indent << "TotalBytes: " << this->GetTotalBytes() << "\n";
   for (const auto& buffer : this->Buffers)
   {

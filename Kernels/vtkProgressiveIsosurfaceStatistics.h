@@ -72,10 +72,14 @@ public:
   vtkTypeInt64 GetBufferBytes(int i);
   ///@}
 
+  ///@{
   /**
-   * The memory budget in force, in bytes: the mapper's, or what it chose itself.
+   * The memory budget in force, in bytes: the mapper's, or what it chose itself; and the least that
+   * the volume can work with at this image size.
    */
   vtkTypeInt64 GetMemoryBudget() { return this->MemoryBudget; }
+  vtkTypeInt64 GetLeastMemoryBudget() { return this->LeastMemoryBudget; }
+  ///@}
 
   ///@{
   /**
@@ -113,6 +117,7 @@ private:
   double TotalMilliseconds = 0.0;
   std::vector<std::pair<std::string, vtkTypeInt64>> Buffers;
   vtkTypeInt64 MemoryBudget = 0;
+  vtkTypeInt64 LeastMemoryBudget = 0;
   std::vector<std::pair<std::string, double>> Stages;
   std::vector<std::string> StagesLeftOut;
   bool Converged = false;

@@ -48,7 +48,8 @@ def statistics(mapper, renderer=None):
             Milliseconds over all passes.
         ``memory``
             GPU memory in bytes: ``buffers`` {name: bytes}, their ``total``, ``compressed``, the
-            part of it that is the compressed stream, and ``budget``, the bound on the rest.
+            part of it that is the compressed stream, ``budget``, the bound on the rest, and
+            ``least_budget``, the least that would do.
         ``stages``, ``left_out``
             Names of the stages that ran, and of those that the scene did not need.
         ``stage_ms``
@@ -79,6 +80,7 @@ def statistics(mapper, renderer=None):
             "total": source.GetTotalBytes(),
             "compressed": source.GetCompressedBytes(),
             "budget": source.GetMemoryBudget(),
+            "least_budget": source.GetLeastMemoryBudget(),
         },
         "stages": [source.GetStage(i) for i in stages],
         "left_out": [source.GetStageLeftOut(i) for i in range(source.GetNumberOfStagesLeftOut())],

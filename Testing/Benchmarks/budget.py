@@ -1,17 +1,18 @@
 """Time and GPU memory over a sweep of memory budgets.
 
-The sweep goes down from what the mapper takes by itself to little more than what it cannot do
-without: the compressed stream, the value ranges and the buffers of the image.
+The sweep goes down, by equal factors, from what the mapper takes by itself beside the compressed
+stream to the least that it can work with.
 """
 
 from __future__ import annotations
 
+import numpy as np
+
 from .orbit import render_orbit, times
-from .ours import other_bytes
 from .timing import summary
 
-#: Parts of what the mapper takes by itself beyond what it cannot do without.
-PARTS = (1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125)
+#: Budgets of a sweep.
+POINTS = 7
 
 
 def measure_budget(field, settings):
@@ -25,19 +26,16 @@ def measure_budget(field, settings):
     Returns
     -------
     dict
-        ``free``, the point without a budget, and ``points``, each with ``budget`` and ``total`` in
-        bytes, ``time`` (a `timing.summary`) and ``passes`` (mean), or ``failed`` with a reason.
+        ``free``, the point without a budget, and ``points``, each with ``budget`` and ``beside``
+        (GPU memory beside the compressed stream) in bytes, ``total``, ``time`` (a
+        `timing.summary`) and ``passes`` (mean).
     """
     free, memory = _measure(field, settings, 0)
-    least = memory["compressed"] + other_bytes(memory)
-    points = []
-    for part in PARTS:
-        budget = least + int(part * (memory["total"] - least))
-        try:
-            point, _ = _measure(field, settings, budget)
-        except RuntimeError as error:
-            point = {"failed": str(error)}
-        points.append({"budget": budget, **point})
+    least = memory["least_budget"]
+    budgets = np.geomspace(max(free["beside"], least), least, POINTS).round().astype(int)
+    points = [
+        {"budget": int(budget), **_measure(field, settings, int(budget))[0]} for budget in budgets
+    ]
     return {**settings.heading(field), "free": free, "points": points}
 
 
@@ -45,9 +43,11 @@ def _measure(field, settings, budget):
     """The orbit's images within a budget: a point, and the memory at the end."""
     _, images = render_orbit(field, settings, memory_budget=budget)
     about = [image["statistics"] for image in images]
+    memories = [a["memory"] for a in about]
     point = {
-        "total": max(a["memory"]["total"] for a in about),
+        "beside": max(memory["total"] - memory["compressed"] for memory in memories),
+        "total": max(memory["total"] for memory in memories),
         "time": summary(times(images)),
         "passes": sum(len(a["passes"]) for a in about) / len(about),
     }
-    return point, about[-1]["memory"]
+    return point, memories[-1]

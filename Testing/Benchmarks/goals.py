@@ -150,9 +150,9 @@ def beside_payload(memory):
     return _at_most(what, memory["other_max"], limit, bytes_, note, timed=False)
 
 
-def within_budget(total, budget):
-    """Total GPU memory against the budget that was set."""
-    return _at_most("GPU memory", total, budget, bytes_, timed=False)
+def within_budget(beside, budget):
+    """GPU memory beside the compressed stream against the budget that was set."""
+    return _at_most("GPU memory beside the stream", beside, budget, bytes_, timed=False)
 
 
 def against_mapper(machine, size, field, voxels, ours_ms, mapper_ms):

@@ -319,7 +319,7 @@ def _power_series(axes, x, points, label, color, marker):
 def _draw_budget(records):
     figure, axes = _figure(7, 4)
     for record, (color, marker) in zip(records, _CYCLE * len(records)):
-        points = [point for point in record["points"] if "failed" not in point]
+        points = record["points"]
         budget = [point["budget"] / 2**20 for point in points]
         time = [point["time"]["mean"] for point in points]
         axes.plot(budget, time, color=color, marker=marker, label=_titled(record))

@@ -103,6 +103,7 @@ def test_too_small_a_budget_is_an_error_that_names_the_least(case):
     assert np.ptp(scene.picture().reshape(-1, 3), axis=0).max() == 0
     scene.mapper.SetMemoryBudget(least)
     assert scene.depth().tobytes() == expected.tobytes()
+    assert scene.statistics()["memory"]["least_budget"] == least
 
 
 @pytest.mark.parametrize("whole", [False, True])

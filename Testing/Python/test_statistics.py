@@ -25,7 +25,7 @@ def test_keys(scene):
     assert set(statistics) == {
         *("passes", "total_ms", "memory", "stages", "left_out", "stage_ms", "converged", "camera", "size", "gl")
     }
-    assert set(statistics["memory"]) == {"buffers", "total", "compressed", "budget"}
+    assert set(statistics["memory"]) == {"buffers", "total", "compressed", "budget", "least_budget"}
     assert set(statistics["camera"]) >= {"position", "focal_point", "view_up", "view_angle", "parallel"}
     assert all(set(PASS_KEYS) <= set(p) for p in statistics["passes"])
     assert statistics["size"] == [200, 150]
