@@ -399,16 +399,19 @@ bool PipelineResources::Allocate(Buffer buffer, std::int64_t bytes)
   return true;
 }
 
-// What is not wanted any more goes first, so that the sum never exceeds what it will be.
-bool PipelineResources::Allocate(Lifetime lifetime, const PipelineExtent& extent)
+void PipelineResources::Trim(const PipelineExtent& extent)
 {
   for (const BufferInfo& info : PipelineBuffers())
   {
-    if (info.Life == lifetime && info.Bytes(extent) != this->Bytes[Index(info.Id)])
+    if (info.Bytes(extent) != this->Bytes[Index(info.Id)])
     {
       this->Free(info.Id);
     }
   }
+}
+
+bool PipelineResources::Allocate(Lifetime lifetime, const PipelineExtent& extent)
+{
   for (const BufferInfo& info : PipelineBuffers())
   {
     if (info.Life == lifetime && !this->Allocate(info.Id, info.Bytes(extent)))

@@ -62,6 +62,8 @@ public:
   /// does not want. One that has the size already is kept, else its contents are undefined.
   bool Allocate(Lifetime lifetime, const PipelineExtent& extent);
   bool Has(Lifetime lifetime, const PipelineExtent& extent) const;
+  /// Free all that an extent wants in another size: the sum never exceeds what it will be.
+  void Trim(const PipelineExtent& extent);
   void Free(Lifetime lifetime);
   void Fill(Buffer buffer, std::uint32_t value);
   std::int64_t GetBytes(Buffer buffer) const;

@@ -168,6 +168,19 @@ void ProgressivePipeline::SetVolume(const PipelineVolume& volume)
   this->TouchedSlots.clear();
 }
 
+void ProgressivePipeline::EmptyCache()
+{
+  if (!this->Extent.Cached)
+  {
+    this->VolumeLoaded = false;
+  }
+  else if (this->Extent.Slots > 0)
+  {
+    this->ResizeCache(this->Extent.Slots);
+  }
+  this->Started = false;
+}
+
 void ProgressivePipeline::SetSettings(const PipelineSettings& settings)
 {
   if (settings.LargestBuffer != this->Settings.LargestBuffer)
@@ -347,17 +360,12 @@ bool ProgressivePipeline::MakeRoom(bool newImage)
   std::int64_t slots = cached ? std::min(this->Extent.Slots, most) : whole.Slots;
   if (reload)
   {
-    this->Gpu.Free(Lifetime::Volume);
     this->Gpu.FreePayload();
     slots = cached ? 0 : whole.Slots;
   }
-  // what shrinks goes before anything grows
-  if (slots != this->Extent.Slots || reload)
-  {
-    this->Gpu.Free(Lifetime::Cache);
-    this->Started = false;
-  }
+  this->Started = this->Started && slots == this->Extent.Slots && !reload;
   this->Extent = cached ? this->WithSlots(slots) : whole;
+  this->Gpu.Trim(this->Extent);
   this->Gpu.SetExtent(this->Extent);
   this->Gpu.UploadScene(this->Scene);
   if (reload)
@@ -401,7 +409,12 @@ void ProgressivePipeline::Start()
   this->PassesWithoutProgress = 0;
   this->Remaining = this->Extent.Pixels;
   this->Started = true;
-  this->Gpu.ForgetStages({ Stage::BlockRanges }); // which ran for the volume
+  std::set<Stage> forVolume = { Stage::BlockRanges };
+  if (!this->Extent.Cached)
+  {
+    forVolume.insert(Stage::DecodeBlocks);
+  }
+  this->Gpu.ForgetStages(forVolume);
   this->StartTime = Clock::now();
   if (!this->Gpu.IsSoftware())
   {

@@ -54,6 +54,8 @@ public:
   /// Take another volume.
   void SetVolume(const PipelineVolume& volume);
   void SetSettings(const PipelineSettings& settings);
+  /// Forget all decoded blocks.
+  void EmptyCache();
   /// The image's size, camera, isovalue and look; the pipeline fills in what it knows itself, and
   /// makes ready what the scene needs: the volume's macrocells, the cache, the image's buffers.
   /// False and GetError() where the budget or the GPU has no room. `newImage`: Start() follows.

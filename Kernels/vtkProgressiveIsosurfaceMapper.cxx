@@ -112,6 +112,7 @@ public:
 
   SceneBlock Scene;
   bool HaveScene = false;
+  bool CacheToEmpty = false; // at the next render, when the context is current
   double TotalMilliseconds = 0.0;
 
   vtkWeakPointer<vtkRenderWindowInteractor> Interactor;
@@ -291,6 +292,11 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(
   settings.DecodeWholeVolume = this->Owner->DecodeWholeVolume;
   settings.Detailed = this->Owner->DetailedStatistics;
   this->Pipeline.SetSettings(settings);
+  if (this->CacheToEmpty)
+  {
+    this->Pipeline.EmptyCache();
+    this->CacheToEmpty = false;
+  }
   if (!this->Pipeline.SetScene(scene, !sameHits))
   {
     return this->Report(this->Pipeline.GetError());
@@ -545,6 +551,11 @@ void vtkProgressiveIsosurfaceMapper::ReleaseGraphicsResources(vtkWindow* window)
     this->Impl->ReleaseGraphics();
   }
   this->Superclass::ReleaseGraphicsResources(window);
+}
+
+void vtkProgressiveIsosurfaceMapper::EmptyCache()
+{
+  this->Impl->CacheToEmpty = true;
 }
 
 bool vtkProgressiveIsosurfaceMapper::GetDepthImage(vtkImageData* image)

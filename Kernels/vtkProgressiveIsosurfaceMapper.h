@@ -158,6 +158,12 @@ public:
   bool GetDepthImage(vtkImageData* image);
 
   /**
+   * For measurements: forget all decoded blocks, so that the next image begins anew and decodes
+   * whatever it needs.
+   */
+  void EmptyCache();
+
+  /**
    * For tests: decode all samples of a compressed volume with the GPU's decoder, into `samples` in
    * x-fastest order. Returns false, with an error event, where that is not possible.
    */

@@ -1,9 +1,8 @@
-"""First images and small moves of a view.
+"""Cold images, small moves and first passes.
 
 Cold, of a view
-    A new mapper renders the complete image from the opposite side of the orbit. That uploads the
-    volume, compiles the shaders and leaves the opposite side's blocks in the cache. Then it
-    renders the complete image from the view: this is the cold time.
+    The cache is emptied, so that nothing of the volume is decoded, and the complete image is
+    rendered.
 Moved
     Then the camera moves by 2 degrees about the focal point, sideways on a great circle, and the
     complete image is rendered again.
@@ -16,14 +15,14 @@ from __future__ import annotations
 from .fields import compressed
 from .ours import Isosurface
 from .timing import summary
-from .view import opposite, turned
+from .view import turned
 
 #: Degrees of a small move.
 MOVE = 2.0
 
 
 def measure_latency(field, settings):
-    """Measure first images and small moves of a field.
+    """Measure cold images, small moves and first passes of a field.
 
     Parameters
     ----------
@@ -37,16 +36,20 @@ def measure_latency(field, settings):
         ``cold``, ``moved`` and ``first_pass``, each a `timing.summary`.
     """
     image, isovalue = compressed(field), settings.isovalues_of(field)[0]
+    cameras = settings.cameras(image)
+    view = Isosurface(image, isovalue, settings.size)
+    for camera in cameras:  # uploads the volume, compiles the shaders, lets the cache grow
+        view.render_from(camera)
     cold, moved, first = [], [], []
-    for camera in settings.cameras(image) * settings.repeat:
-        view = _seen_from_behind(image, isovalue, camera, settings.size)
+    for camera in cameras * settings.repeat:
+        view.mapper.EmptyCache()
         cold.append(view.render_from(camera))
         moved.append(view.render_from(turned(camera, MOVE)))
-        view.close()
-        view = _seen_from_behind(image, isovalue, camera, settings.size)
-        view.set_passes_per_render(1)
+    view.set_passes_per_render(1)
+    for camera in cameras * settings.repeat:
+        view.mapper.EmptyCache()
         first.append(view.render_from(camera))
-        view.close()
+    view.close()
     return {
         **settings.heading(field),
         "isovalues": [isovalue],
@@ -54,10 +57,3 @@ def measure_latency(field, settings):
         "moved": summary(moved),
         "first_pass": summary(first),
     }
-
-
-def _seen_from_behind(image, isovalue, camera, size):
-    """A new view that has rendered the opposite side."""
-    view = Isosurface(image, isovalue, size)
-    view.render_from(opposite(camera))
-    return view

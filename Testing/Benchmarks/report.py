@@ -381,8 +381,8 @@ def _latency(report, records):
     return [
         "## First images and small moves",
         "",
-        "*Cold*: a new mapper renders the complete image from the opposite side, then from the "
-        "view, which is timed. *Moved*: then the camera moves by 2° about the focal point. *First "
+        "*Cold*: the cache is emptied, so that nothing of the volume is decoded, then the complete "
+        "image is rendered. *Moved*: then the camera moves by 2° about the focal point. *First "
         "pass*: as cold, until the first partial image is drawn.",
         "",
         *table(headers, rows),

@@ -189,6 +189,20 @@ def test_cached_blocks_are_not_decoded_again(case):
     assert decoded() < 0.25 * first
 
 
+@pytest.mark.parametrize("settings", [{}, CACHED])
+def test_an_emptied_cache_decodes_again(case, settings):
+    """For measurements: the same image from nothing decoded."""
+    image, isovalue, camera, expected, _ = case
+    scene = Scene(image, isovalue, camera, **settings)
+    scene.render()
+    first = sum(p["decoded_blocks"] for p in scene.statistics()["passes"])
+    scene.mapper.EmptyCache()
+    assert scene.depth().tobytes() == expected.tobytes()
+    again = scene.statistics()
+    assert sum(p["decoded_blocks"] for p in again["passes"]) == first
+    assert {"DecodeBlocks"} <= set(again["stages"])
+
+
 def test_cache_grows_and_shrinks_with_the_scene():
     """A complex view makes the cache grow; after some views that need little it is small again, and the images stay right."""
     values = noise((180, 180, 180), 3)
