@@ -13,7 +13,7 @@ import numpy as np
 import progiso
 
 from ._files import atomic_path, check_output
-from .data import GENERATORS, SCANS, fetch
+from .data import GENERATORS, SCANS, compressed, fetch
 from .io import COMPRESSED_SUFFIXES, PLAIN_SUFFIXES
 from .progress import progress_bar
 
@@ -175,13 +175,17 @@ def _add_data(commands):
     names = command.add_subparsers(title="volumes", metavar="NAME")
     for scan in SCANS.values():
         volume = names.add_parser(scan.name, help=scan.description, description=_about_scan(scan))
-        volume.set_defaults(run=_data, name=scan.name, options=())
+        volume.set_defaults(run=_data, name=scan.name, options=(), rate=None)
     for generator in GENERATORS.values():
         volume = names.add_parser(generator.name, help=generator.description)
         volume.set_defaults(run=_data, name=generator.name, options=("size", *generator.options))
         volume.add_argument(
             "--size", type=_sides, default=128, metavar="N[xNxN]", help="samples (default: 128)"
         )
+        volume.add_argument(
+            "--rate", type=float, metavar="BITS",
+            help="a compressed file, at this many bits per sample; never holds all samples",
+        )  # fmt: skip
         for key, option in generator.options.items():
             default = "" if option.default is None else f" (default: {option.default:g})"
             volume.add_argument(f"--{key}", type=option.kind, default=option.default,
@@ -380,7 +384,10 @@ def _data(parsed):
     options = {key: getattr(parsed, key) for key in parsed.options}
     given = {key: value for key, value in options.items() if value is not None}
     with progress_bar(f"Getting {parsed.name}") as progress:
-        path = fetch(parsed.name, progress=progress, **given)
+        if parsed.rate is None:
+            path = fetch(parsed.name, progress=progress, **given)
+        else:
+            path = compressed(parsed.name, rate=parsed.rate, progress=progress, **given)
     print(path)
 
 
@@ -388,6 +395,6 @@ def _list_data(_parsed):
     for scan in SCANS.values():
         print(f"{scan.name:16}{_about_scan(scan)}")
     for generator in GENERATORS.values():
-        options = " ".join(f"--{key}" for key in ("size", *generator.options))
+        options = " ".join(f"--{key}" for key in ("size", "rate", *generator.options))
         isovalues = ", ".join(f"{value:g}" for value in generator.isovalues)
         print(f"{generator.name:16}{generator.description}. Isovalues: {isovalues}. {options}")
