@@ -17,8 +17,8 @@ namespace
 {
 // Blocks in a group that starts and ends on a 64-bit word whatever the bits per block.
 constexpr vtkTypeInt64 GroupSize = 64;
-// Groups that a thread takes at a time.
-constexpr int GroupsPerTurn = 8;
+// Groups that a thread takes at a time: few, so that many threads finish a step together.
+constexpr int GroupsPerTurn = 2;
 // Blocks in a step that are worth starting the threads for.
 constexpr vtkTypeInt64 BlocksPerStep = 1 << 15;
 }

@@ -110,6 +110,10 @@ def _add_compress(commands):
     command.add_argument("out", metavar="OUT", type=Path, help="a .vti or .zfp file")
     _add_array(command)
     command.add_argument("--threads", type=int, default=0, help="0 (default) for one per core")
+    command.add_argument(
+        "--appended", action="store_true",
+        help="a .vti that reads ten times faster, though not in Debian 12's ParaView",
+    )  # fmt: skip
 
 
 def _add_decompress(commands):
@@ -245,19 +249,19 @@ def _read(parsed, name="file"):
         return progiso.read(path, *parsed.zfp_header, progress=progress)
 
 
-def _save(image, path):
+def _save(image, path, appended=False):
     with progress_bar(f"Writing {path.name}") as progress:
-        progiso.save(image, path, progress)
+        progiso.save(image, path, progress, appended)
 
 
 def _compress(parsed):
-    check_output(parsed.out, COMPRESSED_SUFFIXES)
+    check_output(parsed.out, (".vti",) if parsed.appended else COMPRESSED_SUFFIXES)
     image = _read(parsed, "in")
     with progress_bar("Compressing") as progress:
         volume = progiso.compress(
             image, parsed.rate, parsed.array, parsed.component, parsed.threads, progress
         )
-    _save(volume, parsed.out)
+    _save(volume, parsed.out, parsed.appended)
     about = progiso.describe(volume)
     print(f"{parsed.out}: {about['stream_bytes']} bytes, {about['rate']:g} bits per sample")
 
