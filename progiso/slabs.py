@@ -98,8 +98,8 @@ def compute_slabs(slice_at, dimensions, threads=0):
 
     Examples
     --------
-    >>> [slab.sum() for slab in compute_slabs(lambda z: np.full((2, 3), z), (3, 2, 4), 1)]
-    [36.0]
+    >>> [slab.shape for slab in compute_slabs(lambda z: np.full((2, 3), z), (3, 2, 5), 1)]
+    [(5, 2, 3)]
     """
     width, height, slices = dimensions
     threads = threads or _cores()
