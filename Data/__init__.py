@@ -13,9 +13,9 @@ import os
 from pathlib import Path
 
 from .catalogue import SCANS, fetch_scan
-from .generators import GENERATORS, generate
+from .generators import GENERATORS, generate, generate_compressed
 
-__all__ = ["GENERATORS", "SCANS", "cache_folder", "fetch"]
+__all__ = ["GENERATORS", "SCANS", "cache_folder", "compressed", "fetch"]
 
 
 def cache_folder():
@@ -81,3 +81,46 @@ def fetch(name, folder=None, progress=None, **options):
         return generate(GENERATORS[name], folder, progress=progress, **options)
     known = ", ".join((*SCANS, *GENERATORS))
     raise ValueError(f"there is no volume named '{name}'; there are: {known}")
+
+
+def compressed(name, size=128, rate=8.0, folder=None, progress=None, **options):
+    """Get a generated volume as a compressed file, for sizes that exceed memory or disk.
+
+    The volume is generated and compressed a few slices at a time. The result is bit for bit that
+    of compressing what `fetch` gives, whose file is not made.
+
+    Parameters
+    ----------
+    name : str
+        One of `GENERATORS`.
+    size : int or tuple of int, default: 128
+        Samples per side, or along x, y and z.
+    rate : float, default: 8
+        Bits per sample, in (0, 32].
+    folder : str or os.PathLike, optional
+        Where to keep it instead of `cache_folder`.
+    progress : callable, optional
+        Called with the fraction done, from 0 to 1.
+    **options
+        The generator's own, see `GENERATORS`.
+
+    Returns
+    -------
+    pathlib.Path
+        A ``.zfp`` file, to be read with `progiso.read`.
+
+    Raises
+    ------
+    ValueError
+        When there is no such generator, or an option is unknown or out of range.
+
+    Examples
+    --------
+    >>> compressed("gyroid", size=(64, 32, 32), rate=2).name
+    'gyroid-k6-seed7_64x32x32_rate2.zfp'
+    """
+    if name not in GENERATORS:
+        known = ", ".join(GENERATORS)
+        raise ValueError(f"there is no generator named '{name}'; there are: {known}")
+    folder = Path(folder) if folder is not None else cache_folder()
+    return generate_compressed(GENERATORS[name], folder, size, rate, progress, **options)

@@ -67,7 +67,8 @@ target_include_directories(progiso_zfp PRIVATE "${CMAKE_CURRENT_LIST_DIR}")
 target_link_libraries(progiso_zfp PUBLIC OpenMP::OpenMP_C PRIVATE m)
 target_link_options(progiso_zfp INTERFACE "LINKER:--exclude-libs,ALL")
 # Streams of arbitrary bits make zfp's inverse transform overflow: let it wrap, as on the GPU.
-target_compile_options(progiso_zfp PRIVATE "$<$<C_COMPILER_ID:GNU,Clang,AppleClang>:-fwrapv>")
+# Most of the encoder's time is a loop over the 64 coefficients of a block: unrolled, it takes a fifth less.
+target_compile_options(progiso_zfp PRIVATE "$<$<C_COMPILER_ID:GNU,Clang,AppleClang>:-fwrapv;-funroll-loops>")
 set_target_properties(progiso_zfp PROPERTIES
   C_VISIBILITY_PRESET hidden
   POSITION_INDEPENDENT_CODE ON)

@@ -82,27 +82,6 @@ bool Contains(vtkDataSetAttributes* attributes, vtkDataArray* array)
   }
   return false;
 }
-
-//------------------------------------------------------------------------------
-// What zfp cannot represent among the values.
-std::string CheckValues(const vtkZFPBlocks::Summary& summary)
-{
-  std::ostringstream error;
-  // zero in place of a tiny value may not show in float32 beside the largest value: 2^24 times
-  // larger
-  const float enough = vtkZFPBlocks::TinyMagnitude() * 16777216.0f;
-  if (!summary.IsFinite())
-  {
-    error << summary.NaNs << " NaN and " << summary.Infinities
-          << " infinite values (as float32), which ZFP cannot compress: replace them first.";
-  }
-  else if (summary.TinyBlocks > 0 && summary.Magnitude() < enough)
-  {
-    error << "values too small for ZFP: the largest is " << summary.Magnitude() << ", and all are "
-          << "below 3.16e-30 in " << summary.TinyBlocks << " blocks of 4x4x4. Scale them up first.";
-  }
-  return error.str();
-}
 }
 
 //------------------------------------------------------------------------------
@@ -242,12 +221,12 @@ bool vtkImageZFPCompress::Compress(
   vtkZFPBlocks::Summary summary;
   const bool complete = blocks.ForEachStep(this,
     [&](vtkTypeInt64 first, vtkTypeInt64 last)
-    { blocks.Encode(array, this->Component, first, last, summary); });
+    { blocks.Encode(array, this->Component, 0, first, last, summary); });
   if (!complete)
   {
     return false;
   }
-  error = CheckValues(summary);
+  error = summary.GetObjection();
   if (!error.empty())
   {
     vtkErrorMacro("Array '" << NameOf(array) << "' has " << error);

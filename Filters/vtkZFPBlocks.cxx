@@ -11,13 +11,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace
 {
 // Blocks in a group that starts and ends on a 64-bit word whatever the bits per block.
 constexpr vtkTypeInt64 GroupSize = 64;
-// Groups that a thread takes at a time.
-constexpr int GroupsPerTurn = 8;
+// Groups that a thread takes at a time: few, so that many threads finish a step together.
+constexpr int GroupsPerTurn = 2;
 // Blocks in a step that are worth starting the threads for.
 constexpr vtkTypeInt64 BlocksPerStep = 1 << 15;
 }
@@ -41,6 +42,39 @@ void vtkZFPBlocks::Summary::Add(float value)
 }
 
 //------------------------------------------------------------------------------
+// As if all were added one by one, four at a time: as often as not this is all that is done to a
+// sample beside zfp's own work.
+void vtkZFPBlocks::Summary::AddBlock(const float samples[64])
+{
+  float low[4], high[4], notFinite[4]; // the latter 0, or NaN if any sample was not finite
+  for (int lane = 0; lane < 4; ++lane)
+  {
+    low[lane] = high[lane] = samples[lane];
+    notFinite[lane] = 0.0f * samples[lane];
+  }
+  for (int i = 4; i < 64; i += 4)
+  {
+    for (int lane = 0; lane < 4; ++lane)
+    {
+      const float value = samples[i + lane];
+      low[lane] = value < low[lane] ? value : low[lane];
+      high[lane] = value > high[lane] ? value : high[lane];
+      notFinite[lane] += 0.0f * value;
+    }
+  }
+  if (notFinite[0] + notFinite[1] + notFinite[2] + notFinite[3] == 0.0f)
+  {
+    this->Minimum = std::min(this->Minimum, *std::min_element(low, low + 4));
+    this->Maximum = std::max(this->Maximum, *std::max_element(high, high + 4));
+    return;
+  }
+  for (int i = 0; i < 64; ++i)
+  {
+    this->Add(samples[i]);
+  }
+}
+
+//------------------------------------------------------------------------------
 void vtkZFPBlocks::Summary::Add(const Summary& other)
 {
   this->Minimum = std::min(this->Minimum, other.Minimum);
@@ -54,6 +88,27 @@ void vtkZFPBlocks::Summary::Add(const Summary& other)
 float vtkZFPBlocks::Summary::Magnitude() const
 {
   return std::max(std::abs(this->Minimum), std::abs(this->Maximum));
+}
+
+//------------------------------------------------------------------------------
+std::string vtkZFPBlocks::Summary::GetObjection() const
+{
+  std::ostringstream objection;
+  // zero in place of a tiny value may not show in float32 beside the largest value: 2^24 times
+  // larger
+  const float enough = TinyMagnitude() * 16777216.0f;
+  if (!this->IsFinite())
+  {
+    objection << this->NaNs << " NaN and " << this->Infinities
+              << " infinite values (as float32), which ZFP cannot compress: replace them first.";
+  }
+  else if (this->TinyBlocks > 0 && this->Magnitude() < enough)
+  {
+    objection << "values too small for ZFP: the largest is " << this->Magnitude()
+              << ", and all are below 3.16e-30 in " << this->TinyBlocks
+              << " blocks of 4x4x4. Scale them up first.";
+  }
+  return objection.str();
 }
 
 //------------------------------------------------------------------------------
@@ -103,23 +158,42 @@ vtkTypeInt64 vtkZFPBlocks::GetLayersPerStep() const
 //------------------------------------------------------------------------------
 vtkZFPBlocks::Block vtkZFPBlocks::GetBlock(vtkTypeInt64 index) const
 {
-  const vtkTypeInt64 position[3] = { index % this->Blocks[0],
-    index / this->Blocks[0] % this->Blocks[1], index / this->Blocks[0] / this->Blocks[1] };
   Block block;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    block.Start[axis] = 4 * position[axis];
-    block.Size[axis] =
-      static_cast<int>(std::min<vtkTypeInt64>(4, this->Dimensions[axis] - block.Start[axis]));
-  }
+  block.Position[0] = index % this->Blocks[0];
+  block.Position[1] = index / this->Blocks[0] % this->Blocks[1];
+  block.Position[2] = index / this->Blocks[0] / this->Blocks[1];
+  this->FindSamples(block);
   return block;
 }
 
 //------------------------------------------------------------------------------
-vtkTypeInt64 vtkZFPBlocks::SampleIndex(const Block& block) const
+// What GetBlock() gives for the next index, without its divisions.
+void vtkZFPBlocks::GoToNext(Block& block) const
 {
-  return block.Start[0] +
-    this->Dimensions[0] * (block.Start[1] + this->Dimensions[1] * block.Start[2]);
+  for (int axis = 0; axis < 2; ++axis)
+  {
+    if (++block.Position[axis] < this->Blocks[axis])
+    {
+      this->FindSamples(block);
+      return;
+    }
+    block.Position[axis] = 0;
+  }
+  ++block.Position[2];
+  this->FindSamples(block);
+}
+
+//------------------------------------------------------------------------------
+void vtkZFPBlocks::FindSamples(Block& block) const
+{
+  const vtkTypeInt64* const position = block.Position;
+  block.Sample =
+    4 * (position[0] + this->Dimensions[0] * (position[1] + this->Dimensions[1] * position[2]));
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const vtkTypeInt64 left = this->Dimensions[axis] - 4 * position[axis];
+    block.Size[axis] = static_cast<int>(std::min<vtkTypeInt64>(4, left));
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -148,9 +222,10 @@ void vtkZFPBlocks::ForEachBlock(
       const vtkTypeInt64 to = std::min(end, (group + 1) * GroupSize);
       const bitstream_offset offset = static_cast<bitstream_offset>(from) * this->BlockBits;
       write ? stream_wseek(codec.Bits, offset) : stream_rseek(codec.Bits, offset);
-      for (vtkTypeInt64 index = from; index < to; ++index)
+      Block block = this->GetBlock(from);
+      for (vtkTypeInt64 index = from; index < to; ++index, this->GoToNext(block))
       {
-        body(codec.Stream, this->GetBlock(index), mine);
+        body(codec.Stream, block, mine);
       }
       if (write)
       {
@@ -170,10 +245,12 @@ void vtkZFPBlocks::ForEachBlock(
 template <typename ArrayT>
 struct vtkZFPBlocks::Encoder
 {
-  Encoder(const vtkZFPBlocks& blocks, ArrayT* array, int component)
-    : Blocks(blocks)
-    , Tuples(vtk::DataArrayTupleRange(array))
-    , Component(component)
+  Encoder(const vtkZFPBlocks& blocks, ArrayT* array, int component, vtkTypeInt64 origin)
+    : Values(vtk::DataArrayValueRange(array))
+    , Stride(array->GetNumberOfComponents())
+    , Row(blocks.Dimensions[0] * this->Stride)
+    , Slice(blocks.Dimensions[1] * this->Row)
+    , Offset(component - 4 * origin * this->Slice)
   {
   }
 
@@ -205,48 +282,62 @@ struct vtkZFPBlocks::Encoder
 
   void Gather(const Block& block, float samples[64], Summary& found) const
   {
-    const vtkTypeInt64 origin = this->Blocks.SampleIndex(block);
+    const vtkTypeInt64 first = block.Sample * this->Stride + this->Offset;
+    if (block.IsWhole())
+    {
+      for (int i = 0; i < 64; ++i)
+      {
+        samples[i] = this->Value(first, i % 4, i / 4 % 4, i / 16);
+      }
+      found.AddBlock(samples);
+      return;
+    }
     for (int z = 0; z < block.Size[2]; ++z)
     {
       for (int y = 0; y < block.Size[1]; ++y)
       {
-        const vtkTypeInt64 row =
-          origin + this->Blocks.Dimensions[0] * (y + this->Blocks.Dimensions[1] * z);
         for (int x = 0; x < block.Size[0]; ++x)
         {
-          const float value = static_cast<float>(this->Tuples[row + x][this->Component]);
-          found.Add(value);
-          samples[16 * z + 4 * y + x] = value;
+          samples[16 * z + 4 * y + x] = this->Value(first, x, y, z);
+          found.Add(samples[16 * z + 4 * y + x]);
         }
       }
     }
   }
 
-  const vtkZFPBlocks& Blocks;
-  decltype(vtk::DataArrayTupleRange(std::declval<ArrayT*>())) Tuples;
-  int Component;
+  float Value(vtkTypeInt64 first, int x, int y, int z) const
+  {
+    return static_cast<float>(
+      this->Values[first + x * this->Stride + y * this->Row + z * this->Slice]);
+  }
+
+  decltype(vtk::DataArrayValueRange(std::declval<ArrayT*>())) Values;
+  vtkTypeInt64 Stride, Row, Slice; // from a sample to its neighbours, in values
+  vtkTypeInt64 Offset;             // of the volume's first value in the array
 };
 
 //------------------------------------------------------------------------------
 struct vtkZFPBlocks::EncodeWorker
 {
   template <typename ArrayT>
-  void operator()(ArrayT* array, vtkZFPBlocks& blocks, int component, vtkTypeInt64 first,
-    vtkTypeInt64 last, Summary& summary) const
+  void operator()(ArrayT* array, vtkZFPBlocks& blocks, int component, vtkTypeInt64 origin,
+    vtkTypeInt64 first, vtkTypeInt64 last, Summary& summary) const
   {
-    blocks.ForEachBlock(first, last, summary, true, Encoder<ArrayT>(blocks, array, component));
+    const Encoder<ArrayT> encoder(blocks, array, component, origin);
+    blocks.ForEachBlock(first, last, summary, true, encoder);
   }
 };
 
 //------------------------------------------------------------------------------
-void vtkZFPBlocks::Encode(
-  vtkDataArray* array, int component, vtkTypeInt64 first, vtkTypeInt64 last, Summary& summary)
+void vtkZFPBlocks::Encode(vtkDataArray* array, int component, vtkTypeInt64 origin,
+  vtkTypeInt64 first, vtkTypeInt64 last, Summary& summary)
 {
   EncodeWorker worker;
-  if (!vtkArrayDispatch::Dispatch::Execute(array, worker, *this, component, first, last, summary))
+  if (!vtkArrayDispatch::Dispatch::Execute(
+        array, worker, *this, component, origin, first, last, summary))
   {
     // array classes that VTK does not dispatch to (bits, implicit arrays): through doubles
-    worker(array, *this, component, first, last, summary);
+    worker(array, *this, component, origin, first, last, summary);
   }
 }
 
@@ -259,7 +350,7 @@ void vtkZFPBlocks::Decode(float* samples, vtkTypeInt64 first, vtkTypeInt64 last)
   this->ForEachBlock(first, last, unused, false,
     [=](zfp_stream* stream, const Block& block, Summary&)
     {
-      float* const target = samples + this->SampleIndex(block);
+      float* const target = samples + block.Sample;
       if (block.IsWhole())
       {
         zfp_decode_block_strided_float_3(stream, target, 1, row, slice);
@@ -280,6 +371,11 @@ void vtkZFPBlocks::Summarise(vtkTypeInt64 first, vtkTypeInt64 last, Summary& sum
     {
       float samples[64];
       zfp_decode_block_float_3(stream, samples);
+      if (block.IsWhole())
+      {
+        mine.AddBlock(samples);
+        return;
+      }
       for (int z = 0; z < block.Size[2]; ++z)
       {
         for (int y = 0; y < block.Size[1]; ++y)

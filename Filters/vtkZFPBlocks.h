@@ -21,6 +21,7 @@
 
 #include <algorithm> // for std::min
 #include <limits>    // for the empty range
+#include <string>    // for what is wrong with values
 
 class vtkDataArray;
 
@@ -41,7 +42,14 @@ public:
     bool IsFinite() const { return this->NaNs == 0 && this->Infinities == 0; }
     float Magnitude() const; ///< largest absolute value
     void Add(float value);
+    void AddBlock(const float samples[64]);
     void Add(const Summary& other);
+
+    /**
+     * What zfp cannot represent among the values, as the end of a sentence that begins with what
+     * has them; empty when there is nothing.
+     */
+    std::string GetObjection() const;
   };
 
   /**
@@ -73,16 +81,17 @@ public:
   }
 
   /**
-   * Encode layers [first, last) from one component of an array that holds dims[0]*dims[1]*dims[2]
-   * tuples. Layers must be encoded in order, each once. As soon as a value that is not finite (as
-   * float32) has been seen, here or in `summary`, values are counted but no longer encoded.
+   * Encode layers [first, last) from one component of an array that holds their tuples, the first
+   * being that of layer `origin`. Layers must be encoded in order, each once. As soon as a value
+   * that is not finite (as float32) has been seen, here or in `summary`, values are counted but no
+   * longer encoded.
    *
    * Where all values of a block are smaller than TinyMagnitude(), zfp's encoder overflows (it
    * scales by 2^(30-exponent) in float32) and yields arbitrary values of about that size. Such
    * blocks are encoded as zero, and counted.
    */
-  void Encode(
-    vtkDataArray* array, int component, vtkTypeInt64 first, vtkTypeInt64 last, Summary& summary);
+  void Encode(vtkDataArray* array, int component, vtkTypeInt64 origin, vtkTypeInt64 first,
+    vtkTypeInt64 last, Summary& summary);
 
   static float TinyMagnitude() { return 3.1554436e-30f; } // 2^-98
 
@@ -97,10 +106,12 @@ public:
   void Summarise(vtkTypeInt64 first, vtkTypeInt64 last, Summary& summary);
 
 private:
-  // A block's lowest sample and its number of samples per axis, fewer than 4 at the upper borders.
+  // A block's place among the blocks, the index of its lowest sample, and its number of samples per
+  // axis, fewer than 4 at the upper borders.
   struct Block
   {
-    vtkTypeInt64 Start[3];
+    vtkTypeInt64 Position[3];
+    vtkTypeInt64 Sample;
     int Size[3];
     bool IsWhole() const { return this->Size[0] + this->Size[1] + this->Size[2] == 12; }
   };
@@ -111,7 +122,8 @@ private:
 
   vtkTypeInt64 GetLayersPerStep() const;
   Block GetBlock(vtkTypeInt64 index) const;
-  vtkTypeInt64 SampleIndex(const Block& block) const;
+  void GoToNext(Block& block) const;
+  void FindSamples(Block& block) const;
   template <typename Body>
   void ForEachBlock(vtkTypeInt64 first, vtkTypeInt64 last, Summary& summary, bool write, Body body);
 

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <fstream>
 #include <sstream>
+#include <vector>
 
 vtkStandardNewMacro(vtkZFPReader);
 
@@ -108,14 +109,35 @@ std::string ReadHeader(
 }
 
 //------------------------------------------------------------------------------
-// Drops the first `shift` bits (fewer than 64) of `count` words; 0 bits come in at the end.
-void DropBits(vtkTypeUInt64* words, vtkTypeInt64 count, int shift)
+// Reads the words of a stream that begins at a bit of a file, and may end in the middle of a word.
+// All threads take parts that fit their caches, each moved into place at once.
+bool ReadWords(const std::string& fileName, vtkTypeInt64 fileBytes, vtkTypeInt64 firstBit,
+  vtkTypeUInt64* words, vtkTypeInt64 count)
 {
-  for (vtkTypeInt64 i = 0; shift && i < count; ++i)
+  constexpr vtkTypeInt64 part = 1 << 15;
+  const int shift = static_cast<int>(firstBit % 64);
+  bool complete = true;
+#pragma omp parallel reduction(&& : complete)
   {
-    const vtkTypeUInt64 next = i + 1 < count ? words[i + 1] : 0;
-    words[i] = words[i] >> shift | next << (64 - shift);
+    std::ifstream file(fileName, std::ios::binary);
+    std::vector<vtkTypeUInt64> source(part + 1);
+#pragma omp for schedule(dynamic)
+    for (vtkTypeInt64 begin = 0; begin < count; begin += part)
+    {
+      const vtkTypeInt64 end = std::min(begin + part, count);
+      const vtkTypeInt64 offset = 8 * (firstBit / 64 + begin);
+      const vtkTypeInt64 bytes = std::min(8 * (end - begin + 1), fileBytes - offset);
+      std::fill(source.begin() + bytes / 8, source.end(), 0); // where the file ends
+      file.clear();
+      file.seekg(offset);
+      complete = file.read(reinterpret_cast<char*>(source.data()), bytes) && complete;
+      for (vtkTypeInt64 i = 0; i < end - begin; ++i)
+      {
+        words[begin + i] = shift ? source[i] >> shift | source[i + 1] << (64 - shift) : source[i];
+      }
+    }
   }
+  return complete;
 }
 }
 
@@ -264,34 +286,23 @@ int vtkZFPReader::RequestData(
 //------------------------------------------------------------------------------
 std::string vtkZFPReader::Load(const Layout& layout, vtkImageData* output)
 {
-  // whole words from the one that holds the stream's first bit on, moved to start at that bit
-  const int shift = layout.HeaderBits % 64;
-  const vtkTypeInt64 offset = layout.HeaderBits / 64 * 8;
-  const vtkTypeInt64 words = (shift + layout.PayloadBits() + 63) / 64;
-  const vtkTypeInt64 present = std::min(8 * words, layout.FileBytes - offset);
+  const vtkTypeInt64 bytes =
+    vtkCompressedVolume::StreamBytesFor(layout.Dimensions, layout.BlockBits);
   vtkNew<vtkUnsignedCharArray> stream;
-  stream->SetNumberOfValues(8 * words);
-  unsigned char* const bytes = stream->GetPointer(0);
-  std::fill(bytes + present, bytes + 8 * words, static_cast<unsigned char>(0));
-  std::ifstream file(layout.FileName, std::ios::binary);
-  file.seekg(offset);
-  if (!file.read(reinterpret_cast<char*>(bytes), present))
+  stream->SetNumberOfValues(bytes);
+  auto* const words = reinterpret_cast<vtkTypeUInt64*>(stream->GetPointer(0));
+  if (!ReadWords(layout.FileName, layout.FileBytes, layout.HeaderBits, words, bytes / 8))
   {
     return "could not be read to the end";
   }
-  auto* const begin = reinterpret_cast<vtkTypeUInt64*>(bytes);
-  DropBits(begin, words, shift);
   if (const int used = layout.PayloadBits() % 64)
   {
-    begin[layout.PayloadBits() / 64] &= (vtkTypeUInt64(1) << used) - 1;
+    words[bytes / 8 - 1] &= (vtkTypeUInt64(1) << used) - 1;
   }
-  // a word may have become superfluous; this may move the memory
-  stream->SetNumberOfValues(
-    vtkCompressedVolume::StreamBytesFor(layout.Dimensions, layout.BlockBits));
 
   std::string error;
   double range[2];
-  if (!this->FindRange(layout, stream->GetPointer(0), range, error))
+  if (!this->FindRange(layout, words, range, error))
   {
     return error;
   }

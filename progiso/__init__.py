@@ -4,9 +4,9 @@
 >>> from progiso.data import fetch
 >>> result = progiso.render(progiso.read(fetch("sphere", size=32)), isovalue=0.8)
 
-Volumes are compressed by `compress`, read and written by `read` and `save`, shown by `render`,
-by `make_isosurface` in a VTK renderer of your own, or by ``plotter.progiso.add_isosurface`` in
-pyvista.
+Volumes are compressed by `compress`, those larger than memory by `compress_slabs`, read and written
+by `read` and `save`, shown by `render`, by `make_isosurface` in a VTK renderer of your own, or by
+``plotter.progiso.add_isosurface`` in pyvista.
 """
 
 from __future__ import annotations
@@ -55,9 +55,11 @@ from .geometry import image_from_array  # noqa: E402
 from .io import read, save  # noqa: E402
 from .isosurface import make_isosurface  # noqa: E402
 from .render import RenderResult, render, write_png  # noqa: E402
+from .slabs import compress_slabs  # noqa: E402
 from .statistics import depth, statistics  # noqa: E402
 from .vtkProgIsoFilters import (  # noqa: E402
     vtkCompressedVolume,
+    vtkCompressedVolumeBuilder,
     vtkImageZFPCompress,
     vtkImageZFPDecompress,
     vtkZFPReader,
@@ -74,6 +76,7 @@ __all__ = [
     "RenderResult",
     "add_isosurface",
     "compress",
+    "compress_slabs",
     "decompress",
     "depth",
     "describe",
@@ -87,6 +90,7 @@ __all__ = [
     "statistics",
     "view_camera",
     "vtkCompressedVolume",
+    "vtkCompressedVolumeBuilder",
     "vtkImageZFPCompress",
     "vtkImageZFPDecompress",
     "vtkIsosurfaceVolume",

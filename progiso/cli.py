@@ -14,7 +14,7 @@ import progiso
 
 from ._files import atomic_path, check_output
 from .benchmarks.command import add_bench
-from .data import GENERATORS, SCANS, fetch
+from .data import GENERATORS, SCANS, compressed, fetch
 from .io import COMPRESSED_SUFFIXES, PLAIN_SUFFIXES
 from .progress import progress_bar
 
@@ -113,6 +113,10 @@ def _add_compress(commands):
     command.add_argument("out", metavar="OUT", type=Path, help="a .vti or .zfp file")
     _add_array(command)
     command.add_argument("--threads", type=int, default=0, help="0 (default) for one per core")
+    command.add_argument(
+        "--appended", action="store_true",
+        help="a .vti that reads ten times faster, though not in Debian 12's ParaView",
+    )  # fmt: skip
 
 
 def _add_decompress(commands):
@@ -187,13 +191,17 @@ def _add_data(commands):
     names = command.add_subparsers(title="volumes", metavar="NAME")
     for scan in SCANS.values():
         volume = names.add_parser(scan.name, help=scan.description, description=_about_scan(scan))
-        volume.set_defaults(run=_data, name=scan.name, options=())
+        volume.set_defaults(run=_data, name=scan.name, options=(), rate=None)
     for generator in GENERATORS.values():
         volume = names.add_parser(generator.name, help=generator.description)
         volume.set_defaults(run=_data, name=generator.name, options=("size", *generator.options))
         volume.add_argument(
             "--size", type=_sides, default=128, metavar="N[xNxN]", help="samples (default: 128)"
         )
+        volume.add_argument(
+            "--rate", type=float, metavar="BITS",
+            help="a compressed file, at this many bits per sample; never holds all samples",
+        )  # fmt: skip
         for key, option in generator.options.items():
             default = "" if option.default is None else f" (default: {option.default:g})"
             volume.add_argument(f"--{key}", type=option.kind, default=option.default,
@@ -258,19 +266,19 @@ def _read(parsed, name="file"):
         return progiso.read(path, *parsed.zfp_header, progress=progress)
 
 
-def _save(image, path):
+def _save(image, path, appended=False):
     with progress_bar(f"Writing {path.name}") as progress:
-        progiso.save(image, path, progress)
+        progiso.save(image, path, progress, appended)
 
 
 def _compress(parsed):
-    check_output(parsed.out, COMPRESSED_SUFFIXES)
+    check_output(parsed.out, (".vti",) if parsed.appended else COMPRESSED_SUFFIXES)
     image = _read(parsed, "in")
     with progress_bar("Compressing") as progress:
         volume = progiso.compress(
             image, parsed.rate, parsed.array, parsed.component, parsed.threads, progress
         )
-    _save(volume, parsed.out)
+    _save(volume, parsed.out, parsed.appended)
     about = progiso.describe(volume)
     print(f"{parsed.out}: {about['stream_bytes']} bytes, {about['rate']:g} bits per sample")
 
@@ -399,7 +407,10 @@ def _data(parsed):
     options = {key: getattr(parsed, key) for key in parsed.options}
     given = {key: value for key, value in options.items() if value is not None}
     with progress_bar(f"Getting {parsed.name}") as progress:
-        path = fetch(parsed.name, progress=progress, **given)
+        if parsed.rate is None:
+            path = fetch(parsed.name, progress=progress, **given)
+        else:
+            path = compressed(parsed.name, rate=parsed.rate, progress=progress, **given)
     print(path)
 
 
@@ -407,6 +418,6 @@ def _list_data(_parsed):
     for scan in SCANS.values():
         print(f"{scan.name:16}{_about_scan(scan)}")
     for generator in GENERATORS.values():
-        options = " ".join(f"--{key}" for key in ("size", *generator.options))
+        options = " ".join(f"--{key}" for key in ("size", "rate", *generator.options))
         isovalues = ", ".join(f"{value:g}" for value in generator.isovalues)
         print(f"{generator.name:16}{generator.description}. Isovalues: {isovalues}. {options}")

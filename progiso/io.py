@@ -146,7 +146,7 @@ _READERS = {
 }
 
 
-def save(image, path, progress=None):
+def save(image, path, progress=None, appended=False):
     """Write a volume to a file, which appears under its name only when it is complete.
 
     Parameters
@@ -154,16 +154,22 @@ def save(image, path, progress=None):
     image : vtkmodules.vtkCommonDataModel.vtkImageData
         Plain, or compressed (for ``.vti`` and ``.zfp``).
     path : str or os.PathLike
-        ``.vti`` keeps everything. ``.zfp`` keeps a compressed volume's stream alone. ``.mha``,
-        ``.nii`` and ``.nii.gz`` keep the active point scalars with the geometry, ``.raw`` (named
+        ``.vti`` keeps everything. ``.zfp`` keeps a compressed volume's stream alone; reading it
+        decodes the blocks once, in all cores, to find their range. ``.mha``, ``.nii`` and
+        ``.nii.gz`` keep the active point scalars with the geometry, ``.raw`` (named
         ``name_WxHxD_type.raw``) the active point scalars alone.
     progress : callable, optional
         Called with the fraction done, from 0 to 1, while a ``.vti`` is written.
+    appended : bool, default: False
+        Append a ``.vti``'s data as raw bytes behind its XML: a quarter smaller, and more than ten
+        times faster to read than data in line, which VTK decodes from text on one core (seconds
+        per GiB). But Debian 12's ParaView cannot read such files; all others do.
 
     Raises
     ------
     ValueError
-        When the suffix is unknown or the format cannot hold this image.
+        When the suffix is unknown, the format cannot hold this image, or `appended` is asked of
+        another format than ``.vti``.
     FileNotFoundError
         When the folder does not exist.
     RuntimeError
@@ -186,9 +192,11 @@ def save(image, path, progress=None):
         )
     if suffix not in COMPRESSED_SUFFIXES:
         _check_plain(image, path, compressed)
+    if appended and suffix != ".vti":
+        raise ValueError(f"'{path}': only a .vti file can have its data appended")
     with atomic_path(path) as temporary:
         if suffix == ".vti":
-            _write_vti(image, temporary, progress)
+            _write_vti(image, temporary, progress, appended)
         else:
             _WRITERS[suffix](image, temporary)
 
@@ -205,15 +213,19 @@ def _check_plain(image, path, compressed):
         )
 
 
-def _write_vti(image, path, progress=None):
-    """Data in line, not squeezed a second time when it is a compressed stream.
+def _write_vti(image, path, progress=None, appended=False):
+    """Data not squeezed a second time when it is a compressed stream.
 
-    Not appended, which would be a quarter smaller: Debian 12's ParaView cannot read appended data
-    since a security update of its XML parser (libexpat1 2.5.0-1+deb12u2).
+    In line unless asked otherwise: Debian 12's ParaView cannot read appended data since a security
+    update of its XML parser (libexpat1 2.5.0-1+deb12u2).
     """
     writer = vtkXMLImageDataWriter()
     writer.SetInputData(image)
-    writer.SetDataModeToBinary()
+    if appended:
+        writer.SetDataModeToAppended()
+        writer.EncodeAppendedDataOff()
+    else:
+        writer.SetDataModeToBinary()
     writer.SetHeaderTypeToUInt64()
     if is_compressed(image):
         writer.SetCompressorTypeToNone()

@@ -14,6 +14,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from ..compression import compress, decompress
 from ..data import GENERATORS, SCANS, cache_folder, fetch
+from ..data import compressed as fetch_compressed
 from ..data.generators import checked_dimensions
 from ..io import read, save
 
@@ -166,11 +167,19 @@ def plain_path(field):
     """
     if field.volume in SCANS:
         return fetch(field.volume)
-    needed, free = 4 * field.voxels, shutil.disk_usage(cache_folder()).free
+    _check_disk(4 * field.voxels, "samples")
+    return fetch(field.volume, size=field.dimensions, **_options(field))
+
+
+def _options(field):
+    """Options of the field's generator."""
+    return {} if field.k is None else {"k": field.k}
+
+
+def _check_disk(needed, what):
+    free = shutil.disk_usage(cache_folder()).free
     if needed > free:
-        raise TooLarge(f"its samples take {gib(needed)} of disk, {gib(free)} are free")
-    options = {} if field.k is None else {"k": field.k}
-    return fetch(field.volume, size=field.dimensions, **options)
+        raise TooLarge(f"its {what} take {gib(needed)} of disk, {gib(free)} are free")
 
 
 @lru_cache(maxsize=1)
@@ -195,7 +204,8 @@ def plain(field):
 
 @lru_cache(maxsize=1)
 def compressed(field):
-    """The compressed volume.
+    """The compressed volume; a generated one is made without its samples ever being there as a
+    whole.
 
     Parameters
     ----------
@@ -208,25 +218,36 @@ def compressed(field):
     Raises
     ------
     TooLarge
-        As `plain_path`.
+        When there is no room on the disk.
     """
-    return compress(plain(field), field.rate)
+    if field.volume in SCANS:
+        return compress(plain(field), field.rate)
+    return read(_compressed_path(field))
 
 
-def write_compressed(field, folder):
-    """Write the compressed volume to a file: ``.vti`` for scans; ``.zfp``, which holds all there is
-    to know of a generated field.
+def _compressed_path(field):
+    _check_disk(int(field.voxels * field.rate / 8), "bits")
+    options = _options(field)
+    return fetch_compressed(field.volume, field.dimensions, field.rate, **options)
+
+
+def compressed_path(field, folder):
+    """A file of the compressed volume: ``.vti`` for scans; ``.zfp``, which holds all there is to
+    know of a generated field.
 
     Parameters
     ----------
     field : Field
     folder : str or os.PathLike
+        Where it is written if it is not in the cache.
 
     Returns
     -------
     pathlib.Path
     """
-    path = Path(folder) / f"{field.name}{'.vti' if field.volume in SCANS else '.zfp'}"
+    if field.volume not in SCANS:
+        return _compressed_path(field)
+    path = Path(folder) / f"{field.name}.vti"
     save(compressed(field), path)
     return path
 

@@ -13,7 +13,7 @@ import tempfile
 from time import perf_counter
 
 from ..io import read
-from .fields import gib, plain_path, write_compressed
+from .fields import gib, plain_path, compressed_path
 from .machine import PeakMemory, available_bytes, gpu_bytes
 from .mesh import Mesh, extract, mesh_bytes
 from .ours import Isosurface
@@ -42,7 +42,7 @@ def measure_peers(field, settings):
     """
     needed, available = int(_PEER_VOLUMES * 4 * field.voxels), available_bytes()
     with tempfile.TemporaryDirectory() as folder:
-        path = write_compressed(field, folder)
+        path = compressed_path(field, folder)
         rows = [_measure(Isosurface.label, _measure_ours, path, field, settings)]
     for label, peer in ((VolumeMapper.label, _measure_mapper), (Mesh.label, _measure_mesh)):
         if needed > available:

@@ -54,6 +54,14 @@ def test_decompress(folder):
     )
 
 
+def test_compress_appended(folder):
+    call(folder, "compress", "plain.vti", "appended.vti", "--rate", 6, "--appended")
+    assert b'encoding="raw"' in (folder / "appended.vti").read_bytes()
+    assert same_bits(
+        reference_values(progiso.read(folder / "appended.vti")), reference_values(progiso.read(folder / "packed.vti"))
+    )
+
+
 def test_info(folder):
     plain, packed = call(folder, "info", "plain.vti"), call(folder, "info", "packed.vti")
     for text in (plain, packed):
@@ -177,6 +185,7 @@ FAILURES = {
     "budget's unit": (["render", "packed.vti", "--isovalue", "0", "--memory-budget", "3T"], "3T"),
     "isovalue": (["render", "packed.vti", "--isovalue", "nan"], "isovalue"),
     "output": (["compress", "plain.vti", "nowhere/x.vti"], "nowhere"),
+    "appended": (["compress", "plain.vti", "x.zfp", "--appended"], "x.zfp"),
 }
 
 

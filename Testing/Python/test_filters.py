@@ -334,6 +334,33 @@ def test_reader_against_the_tool(tmp_path, header, rate, lacking):
     assert list(metadata(output, "Range")) == [decoded.min(), decoded.max()]
 
 
+@pytest.mark.parametrize("header", [False, True])
+@pytest.mark.parametrize("rate", [9 / 64, 7.3, 32])
+def test_reader_puts_parts_together(tmp_path, header, rate):
+    """Files are read in parts of a quarter of a MiB, by several threads."""
+    compressed = progiso.compress(make_image(noise((61, 62, 65), 8)), rate)
+    writer = vtkZFPWriter()
+    writer.SetInputData(compressed)
+    writer.SetFileName(str(tmp_path / "volume.zfp"))
+    writer.SetWriteHeader(header)
+    assert writer.Write() == 1
+    dimensions = None if header else (65, 62, 61)
+    assert stream_of(progiso.read(tmp_path / "volume.zfp", dimensions, rate)) == stream_of(compressed)
+
+
+def test_vti_with_appended_data(tmp_path):
+    """Raw bytes behind the XML hold the same, in less."""
+    compressed = progiso.compress(make_image(noise((30, 31, 32)), origin=(1, 2, 3), extent_start=(5, 6, 7)), 8)
+    progiso.save(compressed, tmp_path / "in_line.vti")
+    progiso.save(compressed, tmp_path / "appended.vti", appended=True)
+    read = progiso.read(tmp_path / "appended.vti")
+    assert stream_of(read) == stream_of(compressed)
+    assert read.GetExtent() == compressed.GetExtent() and read.GetOrigin() == (1, 2, 3)
+    assert (tmp_path / "appended.vti").stat().st_size < 0.8 * (tmp_path / "in_line.vti").stat().st_size
+    with pytest.raises(ValueError, match="appended"):
+        progiso.save(compressed, tmp_path / "volume.zfp", appended=True)
+
+
 def test_reader_refuses_what_is_no_zfp_file(tmp_path):
     path = tmp_path / "bad.zfp"
     for content, settings in ((b"not a zfp file", {}), (b"\0" * 10, {"DataDimensions": (8, 8, 8)}), (None, {})):

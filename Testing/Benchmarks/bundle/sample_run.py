@@ -70,11 +70,11 @@ def use_command_line(folder):
     return progiso.read(raw)
 
 
-def draw(*props):
-    """Render with a line of text, off screen, and read and write the image."""
+def draw(prop, folder):
+    """Render with a line of text, off screen, and write and read the image."""
     renderer, window = vtkRenderer(), vtkRenderWindow()
-    for prop in (*props, vtkTextActor(input="text")):
-        renderer.AddViewProp(prop)
+    renderer.AddViewProp(prop)
+    renderer.AddViewProp(vtkTextActor(input="text"))
     window.SetOffScreenRendering(True)
     window.SetSize(64, 48)
     window.AddRenderer(renderer)
@@ -82,14 +82,14 @@ def draw(*props):
     grabber, writer = vtkWindowToImageFilter(), vtkPNGWriter()
     grabber.SetInput(window)
     writer.SetInputConnection(grabber.GetOutputPort())
-    writer.SetFileName("window.png")
+    writer.SetFileName(str(folder / "window.png"))
     writer.Write()
     reader = vtkPNGReader()
-    reader.SetFileName("window.png")
+    reader.SetFileName(str(folder / "window.png"))
     reader.Update()
 
 
-def use_vtk(image):
+def use_vtk(image, folder):
     """What VTK's users have today: its own isosurface mapper, and meshes."""
     mapper, isosurface, look = vtkGPUVolumeRayCastMapper(), vtkVolume(), vtkVolumeProperty()
     mapper.SetInputData(image)
@@ -99,7 +99,7 @@ def use_vtk(image):
     look.SetScalarOpacity(vtkPiecewiseFunction())
     isosurface.SetMapper(mapper)
     isosurface.SetProperty(look)
-    draw(isosurface)
+    draw(isosurface, folder)
     for extractor in (vtkFlyingEdges3D(), vtkContourFilter()):
         extractor.SetInputData(image)
         extractor.SetValue(0, 0.0)
@@ -108,10 +108,10 @@ def use_vtk(image):
         cells.SetInputConnection(normals.GetOutputPort())
         surface.SetInputConnection(cells.GetOutputPort())
         actor.SetMapper(surface)
-        draw(actor)
+        draw(actor, folder)
     source, writer = vtkSphereSource(), vtkXMLPolyDataWriter()
     writer.SetInputConnection(source.GetOutputPort())
-    writer.SetFileName("mesh.vtp")
+    writer.SetFileName(str(folder / "mesh.vtp"))
     writer.Write()
     cast = vtkImageCast()
     cast.SetInputData(image)
@@ -136,9 +136,8 @@ def loaded_files():
     return sorted(modules - {None} | {line.split()[-1] for line in maps if ".so" in line})
 
 
-with tempfile.TemporaryDirectory() as name, contextlib.chdir(name):
-    with contextlib.redirect_stdout(io.StringIO()):
-        import_everything()
-        use_vtk(use_command_line(Path(name)))
-        use_libraries()
+with tempfile.TemporaryDirectory() as name, contextlib.redirect_stdout(io.StringIO()):
+    import_everything()
+    use_vtk(use_command_line(Path(name)), Path(name))
+    use_libraries()
 print(json.dumps(loaded_files()))
