@@ -152,7 +152,8 @@ bool vtkCompressedVolumeBuilder::AddSlab(vtkDataArray* samples, int component)
   vtkZFPBlocks blocks(
     volume.Dimensions, volume.BlockBits, volume.Stream->GetPointer(0), this->NumberOfThreads);
   const int first = volume.Slices / 4;
-  blocks.Encode(samples, component, first, first, (volume.Slices + slices + 3) / 4, volume.Summary);
+  blocks.Encode(samples, component, first, (volume.Slices + slices + 3) / 4, volume.Summary,
+    [](double) { return true; });
   if (!volume.Summary.IsFinite())
   {
     std::ostringstream message;

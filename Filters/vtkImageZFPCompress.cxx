@@ -219,10 +219,8 @@ bool vtkImageZFPCompress::Compress(
   stream->SetNumberOfValues(vtkCompressedVolume::StreamBytesFor(dims, blockBits));
   vtkZFPBlocks blocks(dims, blockBits, stream->GetPointer(0), this->NumberOfThreads);
   vtkZFPBlocks::Summary summary;
-  const bool complete = blocks.ForEachStep(this,
-    [&](vtkTypeInt64 first, vtkTypeInt64 last)
-    { blocks.Encode(array, this->Component, 0, first, last, summary); });
-  if (!complete)
+  if (!blocks.Encode(array, this->Component, 0, blocks.GetNumberOfLayers(), summary,
+        vtkZFPBlocks::ReportOf(this)))
   {
     return false;
   }

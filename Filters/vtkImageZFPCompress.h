@@ -16,7 +16,7 @@
  * zfp_compress() writes, whatever the number of threads. (Except for blocks of 4x4x4 samples that
  * are all below 2^-98, about 3e-30: zfp's encoder overflows there, this filter stores zero.) Values
  * are converted block by block, so that no second copy of the volume is made. Progress events are
- * sent between layers of blocks, where an abort is also noticed (the output then has no stream).
+ * sent about a hundred times, when an abort is also noticed (the output then has no stream).
  *
  * Errors, each one message and an output without stream: no such array or component; an image with
  * fewer than 2 samples along an axis; a rate outside (0, 32]; NaN or infinite samples (as float32;

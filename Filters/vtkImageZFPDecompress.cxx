@@ -90,10 +90,7 @@ int vtkImageZFPDecompress::RequestData(
 
   const auto stream = AlignedStream(volume->GetStream());
   vtkZFPBlocks blocks(dims, volume->GetBlockBits(), stream->GetPointer(0), this->NumberOfThreads);
-  const bool complete = blocks.ForEachStep(this,
-    [&](vtkTypeInt64 first, vtkTypeInt64 last)
-    { blocks.Decode(samples->GetPointer(0), first, last); });
-  if (!complete)
+  if (!blocks.Decode(samples->GetPointer(0), vtkZFPBlocks::ReportOf(this)))
   {
     return 1;
   }

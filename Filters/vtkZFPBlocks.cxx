@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkZFPBlocks.h"
 
+#include "vtkAlgorithm.h"
 #include "vtkArrayDispatch.h"
 #include "vtkDataArray.h"
 #include "vtkDataArrayRange.h"
@@ -10,6 +11,7 @@
 #include <zfp.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <sstream>
 
@@ -17,10 +19,10 @@ namespace
 {
 // Blocks in a group that starts and ends on a 64-bit word whatever the bits per block.
 constexpr vtkTypeInt64 GroupSize = 64;
-// Groups that a thread takes at a time: few, so that many threads finish a step together.
-constexpr int GroupsPerTurn = 2;
-// Blocks in a step that are worth starting the threads for.
-constexpr vtkTypeInt64 BlocksPerStep = 1 << 15;
+// Groups that a thread takes at a time.
+constexpr int GroupsPerTurn = 8;
+// Fraction of the work after which progress is reported.
+constexpr double ReportedStep = 0.01;
 }
 
 //------------------------------------------------------------------------------
@@ -147,12 +149,13 @@ vtkZFPBlocks::vtkZFPBlocks(const int dims[3], int blockBits, void* words, int th
 }
 
 //------------------------------------------------------------------------------
-// About a hundredth of the volume, but enough blocks to keep the threads busy.
-vtkTypeInt64 vtkZFPBlocks::GetLayersPerStep() const
+vtkZFPBlocks::Report vtkZFPBlocks::ReportOf(vtkAlgorithm* algorithm)
 {
-  const vtkTypeInt64 perLayer = this->Blocks[0] * this->Blocks[1];
-  const vtkTypeInt64 worthwhile = (BlocksPerStep + perLayer - 1) / perLayer;
-  return std::max(worthwhile, this->Blocks[2] / 100);
+  return [=](double fraction)
+  {
+    algorithm->UpdateProgress(fraction);
+    return !algorithm->GetAbortExecute();
+  };
 }
 
 //------------------------------------------------------------------------------
@@ -199,9 +202,10 @@ void vtkZFPBlocks::FindSamples(Block& block) const
 //------------------------------------------------------------------------------
 // Calls body(zfp stream positioned at the block, block, summary of the thread) for all blocks of
 // the layers [first, last), in parallel over groups of blocks that share no word of the stream.
+// Threads never wait for one another before the end: any may be held up by another program.
 template <typename Body>
-void vtkZFPBlocks::ForEachBlock(
-  vtkTypeInt64 first, vtkTypeInt64 last, Summary& summary, bool write, Body body)
+bool vtkZFPBlocks::ForEachBlock(vtkTypeInt64 first, vtkTypeInt64 last, bool write, Summary& summary,
+  const Report& report, Body body)
 {
   const vtkTypeInt64 perLayer = this->Blocks[0] * this->Blocks[1];
   const vtkTypeInt64 begin = first * perLayer;
@@ -209,14 +213,21 @@ void vtkZFPBlocks::ForEachBlock(
   const vtkTypeInt64 firstGroup = begin / GroupSize;
   const vtkTypeInt64 lastGroup = (end + GroupSize - 1) / GroupSize;
   const Summary before = summary;
+  std::atomic<vtkTypeInt64> done{ 0 };
+  std::atomic<bool> stopped{ false };
 
 #pragma omp parallel num_threads(this->Threads)
   {
     Codec codec(this->Words, this->BlockBits);
     Summary mine = before;
+    double reported = 0.0;
 #pragma omp for schedule(dynamic, GroupsPerTurn)
     for (vtkTypeInt64 group = firstGroup; group < lastGroup; ++group)
     {
+      if (stopped)
+      {
+        continue;
+      }
       // layers may begin and end inside a group: then its first word is completed by the seek
       const vtkTypeInt64 from = std::max(begin, group * GroupSize);
       const vtkTypeInt64 to = std::min(end, (group + 1) * GroupSize);
@@ -231,6 +242,12 @@ void vtkZFPBlocks::ForEachBlock(
       {
         stream_flush(codec.Bits);
       }
+      const double fraction = static_cast<double>(++done) / (lastGroup - firstGroup);
+      if (omp_get_thread_num() == 0 && fraction - reported >= ReportedStep)
+      {
+        reported = fraction;
+        stopped = !report(fraction);
+      }
     }
     mine.NaNs -= before.NaNs;
     mine.Infinities -= before.Infinities;
@@ -238,6 +255,7 @@ void vtkZFPBlocks::ForEachBlock(
 #pragma omp critical(vtkZFPBlocksSummary)
     summary.Add(mine);
   }
+  return !stopped && report(1.0);
 }
 
 //------------------------------------------------------------------------------
@@ -245,12 +263,12 @@ void vtkZFPBlocks::ForEachBlock(
 template <typename ArrayT>
 struct vtkZFPBlocks::Encoder
 {
-  Encoder(const vtkZFPBlocks& blocks, ArrayT* array, int component, vtkTypeInt64 origin)
+  Encoder(const vtkZFPBlocks& blocks, ArrayT* array, int component, vtkTypeInt64 first)
     : Values(vtk::DataArrayValueRange(array))
     , Stride(array->GetNumberOfComponents())
     , Row(blocks.Dimensions[0] * this->Stride)
     , Slice(blocks.Dimensions[1] * this->Row)
-    , Offset(component - 4 * origin * this->Slice)
+    , Offset(component - 4 * first * this->Slice)
   {
   }
 
@@ -320,34 +338,36 @@ struct vtkZFPBlocks::Encoder
 struct vtkZFPBlocks::EncodeWorker
 {
   template <typename ArrayT>
-  void operator()(ArrayT* array, vtkZFPBlocks& blocks, int component, vtkTypeInt64 origin,
-    vtkTypeInt64 first, vtkTypeInt64 last, Summary& summary) const
+  void operator()(ArrayT* array, vtkZFPBlocks& blocks, int component, vtkTypeInt64 first,
+    vtkTypeInt64 last, Summary& summary, const Report& report, bool& complete) const
   {
-    const Encoder<ArrayT> encoder(blocks, array, component, origin);
-    blocks.ForEachBlock(first, last, summary, true, encoder);
+    const Encoder<ArrayT> encoder(blocks, array, component, first);
+    complete = blocks.ForEachBlock(first, last, true, summary, report, encoder);
   }
 };
 
 //------------------------------------------------------------------------------
-void vtkZFPBlocks::Encode(vtkDataArray* array, int component, vtkTypeInt64 origin,
-  vtkTypeInt64 first, vtkTypeInt64 last, Summary& summary)
+bool vtkZFPBlocks::Encode(vtkDataArray* array, int component, vtkTypeInt64 first, vtkTypeInt64 last,
+  Summary& summary, const Report& report)
 {
   EncodeWorker worker;
+  bool complete = false;
   if (!vtkArrayDispatch::Dispatch::Execute(
-        array, worker, *this, component, origin, first, last, summary))
+        array, worker, *this, component, first, last, summary, report, complete))
   {
     // array classes that VTK does not dispatch to (bits, implicit arrays): through doubles
-    worker(array, *this, component, origin, first, last, summary);
+    worker(array, *this, component, first, last, summary, report, complete);
   }
+  return complete;
 }
 
 //------------------------------------------------------------------------------
-void vtkZFPBlocks::Decode(float* samples, vtkTypeInt64 first, vtkTypeInt64 last)
+bool vtkZFPBlocks::Decode(float* samples, const Report& report)
 {
   const vtkTypeInt64 row = this->Dimensions[0];
   const vtkTypeInt64 slice = row * this->Dimensions[1];
   Summary unused;
-  this->ForEachBlock(first, last, unused, false,
+  return this->ForEachBlock(0, this->Blocks[2], false, unused, report,
     [=](zfp_stream* stream, const Block& block, Summary&)
     {
       float* const target = samples + block.Sample;
@@ -364,9 +384,9 @@ void vtkZFPBlocks::Decode(float* samples, vtkTypeInt64 first, vtkTypeInt64 last)
 }
 
 //------------------------------------------------------------------------------
-void vtkZFPBlocks::Summarise(vtkTypeInt64 first, vtkTypeInt64 last, Summary& summary)
+bool vtkZFPBlocks::Summarise(Summary& summary, const Report& report)
 {
-  this->ForEachBlock(first, last, summary, false,
+  return this->ForEachBlock(0, this->Blocks[2], false, summary, report,
     [](zfp_stream* stream, const Block& block, Summary& mine)
     {
       float samples[64];

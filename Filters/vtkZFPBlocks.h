@@ -5,8 +5,7 @@
  * @brief   encode and decode runs of blocks of a fixed-rate zfp stream in parallel (internal)
  *
  * Knows a stream of 4x4x4 blocks by its dimensions, bits per block and memory, and nothing of
- * images or files. Work is done in layers of blocks (all blocks with the same z), with progress
- * reported in between.
+ * images or files. A layer is all blocks with the same z.
  *
  * Why not zfp_compress() with zfp's OpenMP policy: that encodes into one buffer per thread, which
  * one thread concatenates, and it has no parallel decoder. 64 blocks always fill whole 64-bit words
@@ -16,13 +15,13 @@
 #ifndef vtkZFPBlocks_h
 #define vtkZFPBlocks_h
 
-#include "vtkAlgorithm.h" // for progress
 #include "vtkType.h"
 
-#include <algorithm> // for std::min
-#include <limits>    // for the empty range
-#include <string>    // for what is wrong with values
+#include <functional> // for progress
+#include <limits>     // for the empty range
+#include <string>     // for what is wrong with values
 
+class vtkAlgorithm;
 class vtkDataArray;
 
 class vtkZFPBlocks
@@ -59,51 +58,40 @@ public:
   vtkZFPBlocks(const int dims[3], int blockBits, void* words, int threads);
 
   /**
-   * Calls work(first, last) for a few layers after the other, reporting progress of an algorithm in
-   * between. False when it was aborted.
+   * Called now and then, by the calling thread, with the fraction done; false stops the work.
    */
-  template <typename Work>
-  bool ForEachStep(vtkAlgorithm* algorithm, Work work) const
-  {
-    const vtkTypeInt64 layers = this->Blocks[2];
-    const vtkTypeInt64 step = this->GetLayersPerStep();
-    for (vtkTypeInt64 layer = 0; layer < layers; layer += step)
-    {
-      const vtkTypeInt64 end = std::min(layer + step, layers);
-      work(layer, end);
-      algorithm->UpdateProgress(static_cast<double>(end) / layers);
-      if (algorithm->GetAbortExecute())
-      {
-        return false;
-      }
-    }
-    return true;
-  }
+  using Report = std::function<bool(double)>;
+
+  /**
+   * Reports the progress of an algorithm, and stops when that is aborted.
+   */
+  static Report ReportOf(vtkAlgorithm* algorithm);
 
   /**
    * Encode layers [first, last) from one component of an array that holds their tuples, the first
-   * being that of layer `origin`. Layers must be encoded in order, each once. As soon as a value
+   * being that of layer `first`. Layers must be encoded in order, each once. As soon as a value
    * that is not finite (as float32) has been seen, here or in `summary`, values are counted but no
-   * longer encoded.
+   * longer encoded. False when stopped.
    *
    * Where all values of a block are smaller than TinyMagnitude(), zfp's encoder overflows (it
    * scales by 2^(30-exponent) in float32) and yields arbitrary values of about that size. Such
    * blocks are encoded as zero, and counted.
    */
-  void Encode(vtkDataArray* array, int component, vtkTypeInt64 origin, vtkTypeInt64 first,
-    vtkTypeInt64 last, Summary& summary);
+  bool Encode(vtkDataArray* array, int component, vtkTypeInt64 first, vtkTypeInt64 last,
+    Summary& summary, const Report& report);
+  vtkTypeInt64 GetNumberOfLayers() const { return this->Blocks[2]; }
 
   static float TinyMagnitude() { return 3.1554436e-30f; } // 2^-98
 
   /**
-   * Decode layers [first, last) into an array of dims[0]*dims[1]*dims[2] floats.
+   * Decode all into an array of dims[0]*dims[1]*dims[2] floats. False when stopped.
    */
-  void Decode(float* samples, vtkTypeInt64 first, vtkTypeInt64 last);
+  bool Decode(float* samples, const Report& report);
 
   /**
-   * Decode layers [first, last) only to summarise the samples.
+   * Decode all only to summarise the samples. False when stopped.
    */
-  void Summarise(vtkTypeInt64 first, vtkTypeInt64 last, Summary& summary);
+  bool Summarise(Summary& summary, const Report& report);
 
 private:
   // A block's place among the blocks, the index of its lowest sample, and its number of samples per
@@ -120,12 +108,12 @@ private:
   struct Encoder;
   struct EncodeWorker;
 
-  vtkTypeInt64 GetLayersPerStep() const;
   Block GetBlock(vtkTypeInt64 index) const;
   void GoToNext(Block& block) const;
   void FindSamples(Block& block) const;
   template <typename Body>
-  void ForEachBlock(vtkTypeInt64 first, vtkTypeInt64 last, Summary& summary, bool write, Body body);
+  bool ForEachBlock(vtkTypeInt64 first, vtkTypeInt64 last, bool write, Summary& summary,
+    const Report& report, Body body);
 
   vtkTypeInt64 Dimensions[3];
   vtkTypeInt64 Blocks[3];

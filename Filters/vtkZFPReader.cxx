@@ -328,9 +328,7 @@ bool vtkZFPReader::FindRange(const Layout& layout, void* words, double range[2],
 {
   vtkZFPBlocks blocks(layout.Dimensions, layout.BlockBits, words, 0);
   vtkZFPBlocks::Summary summary;
-  const bool complete = blocks.ForEachStep(
-    this, [&](vtkTypeInt64 first, vtkTypeInt64 last) { blocks.Summarise(first, last, summary); });
-  if (!complete)
+  if (!blocks.Summarise(summary, vtkZFPBlocks::ReportOf(this)))
   {
     return false;
   }
