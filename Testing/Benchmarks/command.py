@@ -81,6 +81,11 @@ def _add_set(sets, name, defaults, size_type):
             type=lambda text: tuple(size_type(part) for part in text.split(",")),
             help="sizes of images (default: 640x360,1280x720,1920x1080,3840x2160)",
         )  # fmt: skip
+    if name in ("quick", "paper", "peers"):
+        one.add_argument(
+            "--largest-mesh", metavar="N", type=_at_least(2),
+            help="largest side of the volumes that meshes are made of (default: as memory allows)",
+        )  # fmt: skip
     one.add_argument(
         "--no-plots",
         action="store_true",

@@ -12,6 +12,9 @@ from typing import Optional
 
 GPU, SOFTWARE = "NVIDIA H200", "2 cores, Mesa lavapipe"
 
+#: Bytes per second that a copy on the GPU's own memory moves, read and written, as measured there.
+BANDWIDTH = {GPU: 4.3e12}
+
 SOURCE = (
     "Usher, Dyken and Kumar (LDAV 2023), their public implementation, as measured beforehand: "
     f"means on an {GPU}, medians on {SOFTWARE}; in brackets with its sort replaced by a counting "

@@ -45,6 +45,9 @@ def measure_peers(field, settings):
         path = compressed_path(field, folder)
         rows = [_measure(Isosurface.label, _measure_ours, path, field, settings)]
     for label, peer in ((VolumeMapper.label, _measure_mapper), (Mesh.label, _measure_mesh)):
+        if peer is _measure_mesh and settings.no_mesh_of(field):
+            rows.append({"peer": label, "failed": settings.no_mesh_of(field)})
+            continue
         if needed > available:
             reason = f"takes {gib(needed)} of main memory, {gib(available)} are available"
             rows.append({"peer": label, "failed": reason})

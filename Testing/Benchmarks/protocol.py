@@ -21,6 +21,9 @@ from .timing import summary
 #: Meshes of at most so many of the isovalues are made, evenly chosen.
 MESHES = 5
 
+#: Hit, depth, normal, ray and the window's colour and depth.
+_BYTES_PER_PIXEL = 32
+
 #: Main memory that extraction may take, in volumes of float32 samples.
 _EXTRACTION_VOLUMES = 2.5
 
@@ -37,8 +40,8 @@ def measure_protocol(field, settings):
     -------
     dict
         ``first_ms``, ``time`` (a `timing.summary`), ``table2``, ``memory``, ``by_pass`` (``with``
-        and ``without`` speculation), ``time_without`` speculation, ``active``, ``stage_ms`` and
-        ``explicit``.
+        and ``without`` speculation), ``time_without`` speculation, ``active``, ``stage_ms``,
+        ``moved_bytes`` and ``explicit``.
     """
     first, timed = render_orbit(field, settings)
     once = replace(settings, repeat=1)
@@ -55,6 +58,7 @@ def measure_protocol(field, settings):
         "time_without": summary(times(without)),
         "active": _active(counts, field.blocks),
         "stage_ms": _stages(counts),
+        "moved_bytes": _moved_bytes(counts, field.rate, settings.size),
         "explicit": _measure_explicit(field, settings),
     }
 
@@ -127,6 +131,17 @@ def _stages(images):
     return {name: sum(share.get(name, 0.0) for share in shares) / len(shares) for name in names}
 
 
+def _moved_bytes(images, rate, size):
+    """The least that an image has to move, on average: what is decoded is read compressed and
+    written as float32, what is intersected is read once a pass, and a pixel is written by the
+    stages (`_BYTES_PER_PIXEL`).
+    """
+    passes = _passes(images)
+    decoded = sum(p["decoded_blocks"] for p in passes) * (8 * rate + BLOCK_BYTES)
+    intersected = sum(p["active_blocks"] for p in passes) * BLOCK_BYTES
+    return (decoded + intersected) / len(images) + _BYTES_PER_PIXEL * size[0] * size[1]
+
+
 def _active(images, blocks):
     """Active blocks of each image, in percent of the volume's: mean and largest over its passes."""
     shares = [[100 * p["active_blocks"] / blocks for p in image["passes"]] for image in images]
@@ -138,6 +153,8 @@ def _active(images, blocks):
 
 def _measure_explicit(field, settings):
     """Blocks that explicit extraction decodes at every isovalue, and meshes at some."""
+    if settings.no_mesh_of(field):
+        return {"left_out": settings.no_mesh_of(field)}
     needed, available = int(_EXTRACTION_VOLUMES * 4 * field.voxels), available_bytes()
     if needed > available:
         reason = f"extraction takes {gib(needed)} of main memory, {gib(available)} are available"

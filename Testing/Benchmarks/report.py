@@ -10,7 +10,7 @@ from .._files import atomic_path
 from . import goals
 from .errors import DEFAULT_DISTANCE
 from .fields import parse_field
-from .literature import SOURCE, literature
+from .literature import BANDWIDTH, SOURCE, literature
 from .ours import Isosurface
 from .text import bytes_, count, milliseconds, number, percent, pixels, table
 from .volume_mapper import VolumeMapper
@@ -247,7 +247,7 @@ def _protocol(report, records):
         "",
         *_protocol_times(report, records),
         *_table2(records),
-        *_stages(records),
+        *_stages(report, records),
         *_tables34(report, records),
     ]
 
@@ -291,21 +291,29 @@ def _table2(records):
     return ["Passes (the paper's Table 2):", "", *table(headers, rows)]
 
 
-def _stages(records):
+def _stages(report, records):
     """Where the time goes, the longest stage of all first."""
     names = dict.fromkeys(name for record in records for name in record["stage_ms"])
     if not names:
         return []
     total = {name: sum(r["stage_ms"].get(name, 0.0) for r in records) for name in names}
     ordered = sorted(names, key=total.get, reverse=True)
+    bandwidth = BANDWIDTH.get(goals.machine_kind(report.machine))
     rows = [
-        [_of(record), *(milliseconds(record["stage_ms"].get(name)) for name in ordered)]
+        [
+            _of(record),
+            *(milliseconds(record["stage_ms"].get(name)) for name in ordered),
+            bytes_(record["moved_bytes"]),
+            *([milliseconds(1e3 * record["moved_bytes"] / bandwidth)] if bandwidth else []),
+        ]
         for record in records
     ]
+    floor = [f"floor ({bandwidth / 1e12:g} TB/s)"] if bandwidth else []
     return [
-        "Stages, means over the images, timed in a run of their own:",
+        "Stages, means over the images, timed in a run of their own, beside the bytes that have to "
+        "be moved: what is decoded, intersected and drawn, each read and written once:",
         "",
-        *table(["field", *ordered], rows),
+        *table(["field", *ordered, "bytes to move", *floor], rows),
     ]
 
 

@@ -34,6 +34,8 @@ class Settings:
         Largest side of the volumes in the scaling with volume size.
     images : tuple of tuple of int
         Widths and heights in the scaling with image size.
+    largest_mesh : int, optional
+        Largest side of the volumes that meshes are made of.
     """
 
     size: tuple
@@ -43,12 +45,18 @@ class Settings:
     seed: int = 0
     largest: Optional[int] = None
     images: tuple = IMAGE_SIZES
+    largest_mesh: Optional[int] = None
 
     def isovalues_of(self, field):
         """The isovalues that a field is rendered at, a list of float."""
         if self.isovalues == PEERS:
             return list(field.isovalues)
         return field.random_isovalues(self.isovalues, self.seed)
+
+    def no_mesh_of(self, field):
+        """Why no mesh is made of a field; None where one is."""
+        large = self.largest_mesh is not None and max(field.dimensions) > self.largest_mesh
+        return f"no meshes of volumes larger than {self.largest_mesh}" if large else None
 
     def cameras(self, image):
         """The orbit's cameras around an image, a list of `progiso.Camera`."""

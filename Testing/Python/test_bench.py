@@ -97,6 +97,24 @@ def test_protocol_counts(results):
         assert theirs <= ours + 1e-9 or ours == 100
 
 
+def test_moved_bytes(results):
+    """The floor of an image's time: no less than its pixels, its blocks decoded and intersected, once."""
+    record = load_document(results("paper") / "results.json")["measurements"]["protocol"][0]
+    pixels = 64 * 48 * 32
+    assert pixels < record["moved_bytes"] < pixels + 6**3 * (256 + 64 + 256) * len(record["by_pass"]["with"])
+
+
+@pytest.mark.parametrize("name, kind", [("peers", "peers"), ("paper", "protocol")])
+def test_largest_mesh(results, folder, name, kind):
+    """No meshes of volumes larger than that; everything else as ever."""
+    out = f"{name}-no-mesh"
+    call(folder, "bench", name, *TINY, *OPTIONS.get(name, ()), "--largest-mesh", 16, "--no-plots", "--output", out)
+    measured = [load_document(folder / of / "results.json")["measurements"][kind][0] for of in (name, out)]
+    text = json.dumps(measured[1])
+    assert "no meshes of volumes larger than 16" in text and "triangles" not in text
+    assert "triangles" in json.dumps(measured[0]) and measured[0].keys() == measured[1].keys()
+
+
 def test_random_isovalues_are_seeded():
     field = parse_field("ct-cranium")
     low, high = min(field.isovalues), max(field.isovalues)
