@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ..render import MAX_SIZE
 from .document import load_document, merge, new_document, save_document
-from .machine import OtherProcesses, describe_machine
+from .machine import OtherProcesses, describe_machine, use_all_cores
 from .report import write_markdown
 from .sets import SETS, steps
 from .settings import IMAGE_SIZES, PEERS, Settings
@@ -130,6 +130,7 @@ def _measure(parsed):
     if not parsed.no_plots:
         _check_matplotlib()
     parsed.output.mkdir(parents=True, exist_ok=True)
+    use_all_cores()
     command = shlex.join(["python", "-m", "progiso", *sys.argv[1:]])
     document = new_document(parsed.set, command, describe_machine())
     start = time.monotonic()

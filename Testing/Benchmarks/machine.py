@@ -16,10 +16,18 @@ from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
 import progiso
 
+from .._built import COMMIT
+
 _STATUS = Path("/proc/self/status")
 _CLEAR_REFS = Path("/proc/self/clear_refs")
 _PROCESSORS = Path("/proc/stat")
 _RESET_PEAK = "5"  # to clear_refs: the peak of the resident set starts anew
+
+
+def use_all_cores():
+    """Have VTK's filters use all cores, as ParaView's do; those of PyPI's wheel use one by default."""
+    if vtkSMPTools.GetBackend() == "Sequential":
+        vtkSMPTools.SetBackend("STDThread")
 
 
 def describe_machine():
@@ -30,8 +38,8 @@ def describe_machine():
     dict
         ``cpu``, ``cores`` (that this process may use), ``memory_bytes``, ``gl`` (renderer and
         version), ``window`` (VTK's class), ``gpu`` (as nvidia-smi names it, else None), ``vtk``,
-        ``smp`` (what VTK's filters run on), ``python``, ``progiso``, and ``commit`` (None outside
-        a git checkout; a trailing ``+`` tells of changes that are not committed).
+        ``smp`` (what VTK's filters run on), ``python``, ``progiso``, and ``commit``, which it was
+        built of (None outside a git checkout; a trailing ``+`` tells of changes since).
     """
     window = vtkRenderWindow()
     window.SetOffScreenRendering(True)
@@ -50,7 +58,7 @@ def describe_machine():
         "smp": f"{vtkSMPTools.GetBackend()}, {vtkSMPTools.GetEstimatedNumberOfThreads()} threads",
         "python": platform.python_version(),
         "progiso": progiso.__version__,
-        "commit": _commit(),
+        "commit": COMMIT or None,
     }
     window.Finalize()
     return about
@@ -75,17 +83,6 @@ def _capability(report, key):
             "or VTK_DEFAULT_OPENGL_WINDOW"
         )
     return values[0]
-
-
-def _commit():
-    """The commit of the checkout that this package runs from."""
-    folder = Path(progiso.__file__).resolve().parent.parent
-    top = _output("git", "-C", str(folder), "rev-parse", "--show-toplevel")
-    if top is None or Path(top) != folder:
-        return None
-    commit = _output("git", "-C", str(folder), "rev-parse", "--short", "HEAD")
-    changes = _output("git", "-C", str(folder), "status", "--porcelain", "--untracked-files=no")
-    return f"{commit}+" if changes else commit
 
 
 def _output(*command):
