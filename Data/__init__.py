@@ -5,6 +5,8 @@
 'ct-cranium.vti'
 >>> fetch("gyroid", size=32, k=6).name
 'gyroid-k6-seed7_32x32x32_float32.raw'
+
+Volumes that exceed memory or disk come compressed, see `compressed`.
 """
 
 from __future__ import annotations
