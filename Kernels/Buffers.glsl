@@ -43,7 +43,8 @@ layout(std430, binding = BINDING_CONTROL) buffer Control
   uint EvictWanted;  // units to be freed: see PlanEviction in PlanPass.comp
   uint EvictByPages; // 1: a page counts as one unit; 0: as many as it has slots
   uint Evicted;      // units of the threshold age freed so far
-  uint ControlPad[2];
+  uint RefusedBefore; // blocks for which the pass before had no room
+  uint ControlPad;
   Dispatch CastGroups;
   Dispatch FewGroups; // where few rays are left, of CastFewRays instead
   Dispatch NormalGroups;

@@ -81,7 +81,7 @@ struct ControlBlock
   std::uint32_t Requests, Refused, VisibleBlocks, ActiveBlocks;
   std::uint32_t TouchedSlots, FreeSlotsBegin, FreeSlots, ReturnedSlots;
   std::uint32_t FreePagesBegin, FreePages, TakenPages, EvictWanted;
-  std::uint32_t EvictByPages, Evicted, Pad[2];
+  std::uint32_t EvictByPages, Evicted, RefusedBefore, Pad;
   DispatchArguments CastGroups, FewGroups, NormalGroups, RequestGroups, DecodeGroups, EvictGroups;
   std::uint32_t Ages[256];
 };

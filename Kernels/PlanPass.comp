@@ -31,6 +31,7 @@ void OpenImage()
   control.Window = PixelsInTiles();
   control.Requests = 0u;
   control.Refused = 0u;
+  control.RefusedBefore = 0u;
   control.TouchedSlots = 0u;
 }
 
@@ -38,6 +39,7 @@ void OpenImage()
 // Slots and map pages that were taken leave their rings; slots that were not needed after all came back.
 void CloseCache(inout PassRecord record)
 {
+  control.RefusedBefore = control.Refused;
   uint taken = min(min(control.Requests, scene.Cache.x), control.FreeSlots);
   uint decoded = taken - control.ReturnedSlots;
   control.Refused = control.Requests - decoded;
@@ -79,14 +81,15 @@ void ClosePass()
 }
 
 #ifdef HAS_CACHE_MAP
-// Where the cache could not serve a pass and cannot grow, fewer rays take part in the next: a window of pixels, in
-// tile order, from the first that has a live ray on. It opens again as passes succeed.
+// Where the cache could not serve a pass and cannot grow, and what was evicted then was not enough either, fewer rays
+// take part in the next: a window of pixels, in tile order, from the first that has a live ray on. It opens again as
+// passes succeed.
 void PlanWindow()
 {
   uint all = PixelsInTiles();
   uint first = control.Window < all ? min(control.FirstLive, control.Fresh) : 0u;
-  bool refused = control.Refused > 0u && scene.Cache.w != 0u;
-  control.Window = refused ? max(control.Window / 4u, LEAST_WINDOW) : min(2u * control.Window, all);
+  bool again = control.Refused > 0u && control.RefusedBefore > 0u && scene.Cache.w != 0u;
+  control.Window = again ? max(control.Window / 4u, LEAST_WINDOW) : min(2u * control.Window, all);
   control.Frontier = control.Window < all ? min(first + control.Window, all) : all;
   control.FirstLive = all; // the pass finds it anew
 }

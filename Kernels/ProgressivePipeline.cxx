@@ -13,6 +13,7 @@ constexpr std::int64_t LeastSlots = 2048; // any 64 rays find room for all that 
 constexpr std::int64_t LeastPages = 512;  // of the block map, likewise
 constexpr std::int64_t SlotsPerPage = 8;  // else
 constexpr std::int64_t FirstSlots = 16384;
+constexpr std::int64_t Growth = 4; // of the cache, at least
 constexpr int PassesAhead = 3;       // submitted before the CPU knows whether they are needed
 constexpr int PatienceWithNone = 64; // passes that get nowhere before we give up
 constexpr std::size_t RecentImages = 8;
@@ -283,20 +284,21 @@ bool ProgressivePipeline::ResizeCache(std::int64_t slots)
   return true;
 }
 
-// Where a pass could not be served and there is room, the cache grows. It loses what it holds: rays
-// ask again for what they still need.
-void ProgressivePipeline::GrowCache(const PassRecord& pass)
+// Where an image needs more than fits, and there is room, the cache grows: seldom and by much, as
+// GPUs take long to make memory. Beyond a slot a pixel it does so only where eviction does not help.
+// It loses what it holds; rays ask again for what they still need.
+void ProgressivePipeline::GrowCache(const PassRecord& pass, bool refusedBefore)
 {
   const std::int64_t most = this->MaximumSlots();
-  if (pass.RefusedBlocks > 0 && this->Extent.Slots < most)
+  const std::int64_t needed = std::int64_t(pass.TouchedSlots) + pass.RefusedBlocks;
+  const bool small = this->Extent.Slots < this->Extent.Pixels && needed > this->Extent.Slots;
+  if (pass.RefusedBlocks > 0 && (small || refusedBefore) && this->Extent.Slots < most)
   {
-    const std::int64_t wanted =
-      std::max(2 * this->Extent.Slots, this->Extent.Slots + 2 * std::int64_t(pass.RefusedBlocks));
-    this->ResizeCache(std::min(wanted, most));
+    this->ResizeCache(std::min(std::max(Growth * this->Extent.Slots, 2 * needed), most));
   }
 }
 
-// A cache that the last images left mostly unused shrinks.
+// A cache that the last images left mostly unused shrinks: to less than it has ever grown at once.
 std::int64_t ProgressivePipeline::SlotsForRecentImages() const
 {
   if (this->TouchedSlots.size() < RecentImages)
@@ -306,7 +308,7 @@ std::int64_t ProgressivePipeline::SlotsForRecentImages() const
   const std::int64_t most =
     *std::max_element(this->TouchedSlots.begin(), this->TouchedSlots.end());
   const std::int64_t enough = std::max({ 2 * most, FirstSlots, this->MinimumSlots() });
-  return 4 * most < this->Extent.Slots ? std::min(enough, this->Extent.Slots)
+  return Growth * most < this->Extent.Slots ? std::min(enough, this->Extent.Slots)
                                        : this->Extent.Slots;
 }
 
@@ -501,10 +503,12 @@ void ProgressivePipeline::TakeSnapshot()
       pass.RemainingRays != this->Remaining;
     this->PassesWithoutProgress = gotOn ? 0 : this->PassesWithoutProgress + 1;
     this->Remaining = pass.RemainingRays;
+    const bool refusedBefore = this->PassesKnown > this->CacheAge + 1 && !this->Passes.empty() &&
+      this->Passes.back().RefusedBlocks > 0;
     this->Passes.push_back(pass);
     if (this->PassesKnown > this->CacheAge)
     {
-      this->GrowCache(pass);
+      this->GrowCache(pass, refusedBefore);
     }
   }
   if (this->Remaining == 0)

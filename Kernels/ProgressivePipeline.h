@@ -105,7 +105,7 @@ private:
   bool LoadVolume();
   bool LoadWholeVolume();
   bool ResizeCache(std::int64_t slots);
-  void GrowCache(const PassRecord& pass);
+  void GrowCache(const PassRecord& pass, bool refusedBefore);
   std::int64_t SlotsForRecentImages() const;
 
   void RunPass();
