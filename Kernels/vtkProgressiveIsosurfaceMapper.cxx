@@ -37,6 +37,13 @@
 
 namespace
 {
+using Clock = std::chrono::steady_clock;
+
+double MillisecondsSince(Clock::time_point start)
+{
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
 // The pipeline's view of a volume; words of 64 bits, as zfp writes them.
 PipelineVolume DescribeVolume(vtkCompressedVolume* source)
 {
@@ -303,8 +310,9 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(
   }
   if (!sameHits || !this->Pipeline.IsStarted())
   {
-    this->TotalMilliseconds = 0.0;
+    const Clock::time_point start = Clock::now();
     this->Pipeline.Start();
+    this->TotalMilliseconds = MillisecondsSince(start);
   }
   return true;
 }
@@ -320,14 +328,13 @@ bool vtkProgressiveIsosurfaceMapper::Internals::MayRefineLater(vtkOpenGLRenderWi
 // Passes, as many as there is time for, and the image as far as it has come.
 bool vtkProgressiveIsosurfaceMapper::Internals::Refine(vtkOpenGLRenderWindow* window)
 {
-  using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   const bool interactive = this->MayRefineLater(window);
   const double allowance = this->Owner->TimeAllowance;
   auto stop = [&]()
   {
-    const std::chrono::duration<double> spent = Clock::now() - start;
-    return interactive && (spent.count() >= allowance || window->CheckAbortStatus());
+    return interactive &&
+      (MillisecondsSince(start) >= 1e3 * allowance || window->CheckAbortStatus());
   };
   const bool unfinished = !this->Pipeline.GetConverged();
   if (unfinished)
@@ -342,8 +349,7 @@ bool vtkProgressiveIsosurfaceMapper::Internals::Refine(vtkOpenGLRenderWindow* wi
   this->Pipeline.CompleteStatistics();
   if (unfinished)
   {
-    this->TotalMilliseconds +=
-      std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    this->TotalMilliseconds += MillisecondsSince(start);
   }
   return true;
 }

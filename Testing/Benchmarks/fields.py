@@ -222,33 +222,25 @@ def compressed(field):
     """
     if field.volume in SCANS:
         return compress(plain(field), field.rate)
-    return read(_compressed_path(field))
-
-
-def _compressed_path(field):
     _check_disk(int(field.voxels * field.rate / 8), "bits")
-    options = _options(field)
-    return fetch_compressed(field.volume, field.dimensions, field.rate, **options)
+    return read(fetch_compressed(field.volume, field.dimensions, field.rate, **_options(field)))
 
 
-def compressed_path(field, folder):
-    """A file of the compressed volume: ``.vti`` for scans; ``.zfp``, which holds all there is to
-    know of a generated field.
+def save_compressed(field, folder):
+    """Write the compressed volume in the format that loads fastest.
 
     Parameters
     ----------
     field : Field
     folder : str or os.PathLike
-        Where it is written if it is not in the cache.
 
     Returns
     -------
     pathlib.Path
+        A ``.vti`` with its data appended.
     """
-    if field.volume not in SCANS:
-        return _compressed_path(field)
     path = Path(folder) / f"{field.name}.vti"
-    save(compressed(field), path)
+    save(compressed(field), path, appended=True)
     return path
 
 

@@ -4,7 +4,8 @@ Each peer opens its own window, renders, and closes it before the next one. ``fi
 first frame of a new window: upload, shaders, acceleration structures. ``later`` are the frames
 from the orbit's positions, at every isovalue; FlyingEdges extracts anew at every isovalue, which
 is told apart as ``extraction``. ``file_ms`` is from opening the file, which is in the system's file
-cache, to the end of the first frame: the compressed file for ProgIso, the plain one for VTK.
+cache, to the end of the first frame: for ProgIso a compressed ``.vti`` with appended data, for VTK
+the plain file.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import tempfile
 from time import perf_counter
 
 from ..io import read
-from .fields import gib, plain_path, compressed_path
+from .fields import gib, plain_path, save_compressed
 from .machine import PeakMemory, available_bytes, gpu_bytes
 from .mesh import Mesh, extract, mesh_bytes
 from .ours import Isosurface
@@ -42,7 +43,7 @@ def measure_peers(field, settings):
     """
     needed, available = int(_PEER_VOLUMES * 4 * field.voxels), available_bytes()
     with tempfile.TemporaryDirectory() as folder:
-        path = compressed_path(field, folder)
+        path = save_compressed(field, folder)
         rows = [_measure(Isosurface.label, _measure_ours, path, field, settings)]
     for label, peer in ((VolumeMapper.label, _measure_mapper), (Mesh.label, _measure_mesh)):
         if peer is _measure_mesh and settings.no_mesh_of(field):

@@ -164,7 +164,7 @@ def _peers(report, records):
         "## Side by side",
         "",
         "In one process, one after the other, each in a new window. *File to first image*: "
-        "reading (the compressed file for ProgIso, the plain one for VTK, both in the system's "
+        "reading (a `.vti` with appended data for ProgIso, the plain file for VTK, both in the system's "
         "file cache), extraction, and the *first frame*: upload, shaders, complete image. Shaders "
         "may be in the driver's cache from fields before. *GPU memory*: the "
         "most in use above what was before, by nvidia-smi; for ProgIso also, in brackets, what "
@@ -391,7 +391,8 @@ def _latency(report, records):
         "",
         "*Cold*: the cache is emptied, so that nothing of the volume is decoded, then the complete "
         "image is rendered. *Moved*: then the camera moves by 2° about the focal point. *First "
-        "pass*: as cold, until the first partial image is drawn.",
+        "pass*: as cold, until the first partial image is drawn; a small volume that is decoded "
+        "when it is loaded has but one pass, and is not loaded again for it.",
         "",
         *table(headers, rows),
     ]
