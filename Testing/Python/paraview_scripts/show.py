@@ -51,14 +51,6 @@ Hide(wavelet, view)
 shoot("paraview-compressed", packed)
 assert "Progressive Isosurface" in packed.GetProperty("Representation").Available
 
-# Without speculation: the same picture in more passes.
-packed.Speculation = 0
-packed.Isovalue = 140
-view.StillRender()  # another image between: a complete one is not made anew
-packed.Isovalue = 150
-shoot("paraview-no-speculation", packed)
-packed.Speculation = 1
-
 # Another isovalue, moved and turned, with a mesh that cuts through.
 packed.Isovalue = 120
 packed.Position, packed.Orientation = [3, 2, 1], [0, 0, 30]
@@ -69,11 +61,24 @@ shoot("paraview-among-meshes", packed)
 Hide(sphere, view)
 packed.Position, packed.Orientation = [0, 0, 0], [0, 0, 0]
 
+# A budget without room for all of a volume decoded: the same picture in passes; without speculation in more of them.
+large = ZFPCompress(Input=Wavelet(WholeExtent=[-50, 50] * 3), Rate=8)
+Hide(compressed, view)
+bounded = iso(Show(large, view), 180)
+look([150, 110, 130], [0, 0, 0])
+shoot("paraview-whole", bounded)
+bounded.MemoryBudget = 5
+shoot("paraview-budget", bounded)
+bounded.Speculation, bounded.MemoryBudget = 0, 0
+view.StillRender()  # decoded as a whole again: what the cache held is gone
+bounded.MemoryBudget = 5
+shoot("paraview-no-speculation", bounded)
+Hide(large, view)
+
 # Decompression, and a compressed volume from a file.
 restored = ZFPDecompress(Input=compressed)
 restored.UpdatePipeline()
 facts["restored"] = list(restored.PointData["RTData"].GetRange())
-Hide(compressed, view)
 reader = OpenDataFile(volume)
 loaded = iso(Show(reader, view), 0.5)
 look([150, 110, 130], [32, 32, 32], [0, 0, 1])
