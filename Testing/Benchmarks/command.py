@@ -13,7 +13,7 @@ from pathlib import Path
 from ..render import MAX_SIZE
 from .document import load_document, merge, new_document, save_document
 from .machine import OtherProcesses, describe_machine, use_all_cores
-from .report import write_markdown
+from .report import PAGE, write_markdown
 from .sets import SETS, steps
 from .settings import IMAGE_SIZES, PEERS, Settings
 
@@ -36,7 +36,7 @@ def add_bench(command, size_type):
         "results", nargs="+", type=Path, metavar="RESULTS.json",
         help="of runs on one machine; of two measurements of the same thing the later counts",
     )  # fmt: skip
-    _add_output(report)
+    _add_output(report, ", or a Markdown file PAGE.md, whose plots go to a folder PAGE beside it")
     report.set_defaults(run=_report)
 
 
@@ -95,10 +95,10 @@ def _add_set(sets, name, defaults, size_type):
     one.set_defaults(run=_measure, set=name)
 
 
-def _add_output(command):
+def _add_output(command, more=""):
     command.add_argument(
         "--output", metavar="DIR", type=Path, default=Path("bench"),
-        help="folder for the results, made when it is missing (default: %(default)s)",
+        help=f"folder for the results, made when it is missing (default: %(default)s){more}",
     )  # fmt: skip
 
 
@@ -144,15 +144,18 @@ def _measure(parsed):
         run["seconds"] = round(time.monotonic() - start, 1)
         run["complete"] = number == len(measurements)
         save_document(document, parsed.output)
-    _write(document, parsed.output, not parsed.no_plots)
+    _write(document, parsed.output / PAGE, parsed.output, not parsed.no_plots)
 
 
 def _report(parsed):
     _check_matplotlib()
     documents = [load_document(path) for path in parsed.results]
-    parsed.output.mkdir(parents=True, exist_ok=True)
+    page, folder = parsed.output / PAGE, parsed.output
+    if parsed.output.suffix == ".md":
+        page, folder = parsed.output, parsed.output.with_suffix("")
+    folder.mkdir(parents=True, exist_ok=True)
     try:
-        _write(merge(documents), parsed.output, True)
+        _write(merge(documents), page, folder, True)
     except KeyError as error:
         raise ValueError(f"the results lack {error}: measure again") from None
 
@@ -162,11 +165,13 @@ def _check_matplotlib():
         raise ImportError("plots need matplotlib: install it, or give --no-plots where it is taken")
 
 
-def _write(document, folder, with_plots):
-    """Write plots and Markdown, and say where."""
+def _write(document, page, folder, with_plots):
+    """Write plots to the folder and the Markdown page, and say where that is."""
     plots = {}
     if with_plots:
         from .plots import draw_plots  # only here, so that measuring needs no matplotlib
 
         plots = draw_plots(document, folder)
-    print(write_markdown(document, folder, plots))
+    beside = folder.relative_to(page.parent)
+    links = {kind: [str(beside / name) for name in names] for kind, names in plots.items()}
+    print(write_markdown(document, page, links))

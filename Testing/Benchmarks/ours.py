@@ -28,17 +28,29 @@ class Isosurface(View):
         Whether stages are timed and distinct blocks counted, which takes time.
     memory_budget : int, default: 0
         Bytes of GPU memory; 0 for the mapper's own choice.
+    cached : bool, default: False
+        Whether blocks are decoded as rays meet them even where the whole volume fits the budget.
     """
 
     label = "ProgIso"
 
-    def __init__(self, image, isovalue, size, speculation=True, detailed=False, memory_budget=0):
+    def __init__(
+        self,
+        image,
+        isovalue,
+        size,
+        speculation=True,
+        detailed=False,
+        memory_budget=0,
+        cached=False,
+    ):
         prop = make_isosurface(
             image, isovalue, speculation=speculation, memory_budget=memory_budget
         )
         super().__init__(prop, size)
         self.mapper = prop.GetMapper()
         self.mapper.SetDetailedStatistics(detailed)
+        self.mapper.SetDecodeWholeVolume(not cached)
 
     def set_isovalue(self, isovalue):
         """Show another isovalue from the next render on."""

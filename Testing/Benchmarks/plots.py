@@ -262,7 +262,8 @@ def _draw_depth_error(axes, name, points, color, marker):
     time, highest = _xy(points, "p99")
     axes.vlines(time, [point["mean"] for point in points], highest, color=color, lw=0.9, alpha=0.7)
     axes.plot(time, highest, color=color, marker="_", ms=7, ls="none")
-    for point, offset in zip((line[0], line[-1]), ((7, 4), (7, -10))):
+    ends = zip((line[0], line[-1]), ((7, 4), (7, -10)))
+    for point, offset in ends if len(line) > 1 else [(line[0], (7, 4))]:
         axes.annotate(
             point["label"], (point["ms"], point["mean"]), xytext=offset,
             textcoords="offset points", fontsize=7.5, color=color,

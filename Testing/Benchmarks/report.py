@@ -15,28 +15,28 @@ from .ours import Isosurface
 from .text import bytes_, count, milliseconds, number, percent, pixels, table
 from .volume_mapper import VolumeMapper
 
-FILE = "results.md"
+PAGE = "results.md"
 
 _NO_GOAL = ""
 _MET, _NOT_JUDGED = "met", "*not judged, busy*"
 
 
-def write_markdown(document, folder, plots=None):
+def write_markdown(document, path, plots=None):
     """Write results as Markdown.
 
     Parameters
     ----------
     document : dict
         See `document`.
-    folder : str or os.PathLike
+    path : str or os.PathLike
     plots : dict, optional
-        Files to show, see `plots.draw_plots`.
+        Files to show, see `plots.draw_plots`, relative to the page.
 
     Returns
     -------
     pathlib.Path
     """
-    path = Path(folder) / FILE
+    path = Path(path)
     with atomic_path(path) as temporary:
         temporary.write_text(markdown(document, plots or {}), encoding="utf-8")
     return path
@@ -414,7 +414,7 @@ def _errors(report, records):
         "is, in voxels along the ray, where both hit; and the part of all rays that hit where "
         "they should not or the other way round (of a partial image also what it has not "
         "finished). Times are medians of the view after its opposite, the view having been "
-        "rendered before.",
+        "rendered before. *Pass by pass*: blocks are decoded as rays meet them, of small volumes too.",
         "",
     ]
     for record in records:

@@ -131,6 +131,16 @@ def test_report_makes_the_same_of_json(results, folder):
     assert {p.name for p in (folder / "again").glob("*.png")} == {p.name for p in results("quick").glob("*.png")}
 
 
+def test_report_as_a_page(results, folder):
+    """A Markdown file of any name, with its plots in a folder of that name."""
+    call(folder, "bench", "report", results("quick") / "results.json", "--output", "pages/machine.md")
+    text = (folder / "pages" / "machine.md").read_text()
+    shown = re.findall(r"!\[\]\((.*)\)", text)
+    assert shown and all(name.startswith("machine/") for name in shown)
+    assert sorted(shown) == sorted(f"machine/{p.name}" for p in (folder / "pages" / "machine").iterdir())
+    assert text == (results("quick") / "results.md").read_text().replace("![](", "![](machine/")
+
+
 def test_reports_are_put_together(results, folder):
     paths = [results(name) / "results.json" for name in ("peers", "budget", "peers")]
     call(folder, "bench", "report", *paths, "--output", "both")
