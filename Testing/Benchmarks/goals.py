@@ -206,7 +206,7 @@ def error_against_mapper(field, ours, mapper):
     mapper : dict
         The point of VTK's default sample distance.
     """
-    if not field.startswith(("ct-cranium-", "mri-brain-")):
+    if not field.startswith(FASTER_WITHOUT_GPU):
         return None
     good = [p for p in ours if p["mean"] is not None and p["mean"] <= mapper["mean"]]
     best = min(good, key=lambda point: point["ms"], default=None)
