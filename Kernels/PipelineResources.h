@@ -136,7 +136,7 @@ private:
   bool CheckContext();
   void AskLimits();
   bool Allocate(Buffer buffer, std::int64_t bytes);
-  bool MakeBuffer(GLuint& name, std::int64_t bytes, const char* what);
+  bool MakeBuffer(GLuint& name, std::int64_t bytes, std::int64_t largestPlain, const char* what);
   void Free(Buffer buffer);
   bool Bind(Stage stage, const PayloadSegment* segment);
   template <typename Launch>

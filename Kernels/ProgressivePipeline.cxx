@@ -14,6 +14,7 @@ constexpr std::int64_t LeastPages = 512;  // of the block map, likewise
 constexpr std::int64_t SlotsPerPage = 8;  // else
 constexpr std::int64_t FirstSlots = 16384;
 constexpr std::int64_t Growth = 4; // of the cache, at least
+constexpr int MostRefusals = 3; // in a row, of a cache that has a slot for every pixel
 constexpr int PassesAhead = 3;       // submitted before the CPU knows whether they are needed
 constexpr int PatienceWithNone = 64; // passes that get nowhere before we give up
 constexpr std::size_t RecentImages = 8;
@@ -280,19 +281,22 @@ bool ProgressivePipeline::ResizeCache(std::int64_t slots)
   this->Gpu.Dispatch(Stage::CacheReset,
     std::min<std::int64_t>(4096, DivideUp(std::max(slots, this->Extent.CoarseCells), 256)));
   this->CacheAge = this->PassesSubmitted;
+  this->Refusals = 0;
   this->TouchedSlots.clear();
   return true;
 }
 
 // Where an image needs more than fits, and there is room, the cache grows: seldom and by much, as
-// GPUs take long to make memory. Beyond a slot a pixel it does so only where eviction does not help.
+// GPUs take long to make memory. Beyond a slot a pixel it does so only where pass after pass is
+// refused blocks: up to then eviction helps, and another pass costs less than memory does.
 // It loses what it holds; rays ask again for what they still need.
-void ProgressivePipeline::GrowCache(const PassRecord& pass, bool refusedBefore)
+void ProgressivePipeline::GrowCache(const PassRecord& pass)
 {
   const std::int64_t most = this->MaximumSlots();
   const std::int64_t needed = std::int64_t(pass.TouchedSlots) + pass.RefusedBlocks;
   const bool small = this->Extent.Slots < this->Extent.Pixels && needed > this->Extent.Slots;
-  if (pass.RefusedBlocks > 0 && (small || refusedBefore) && this->Extent.Slots < most)
+  this->Refusals = pass.RefusedBlocks > 0 ? this->Refusals + 1 : 0;
+  if (this->Refusals > (small ? 0 : MostRefusals) && this->Extent.Slots < most)
   {
     this->ResizeCache(std::min(std::max(Growth * this->Extent.Slots, 2 * needed), most));
   }
@@ -503,12 +507,10 @@ void ProgressivePipeline::TakeSnapshot()
       pass.RemainingRays != this->Remaining;
     this->PassesWithoutProgress = gotOn ? 0 : this->PassesWithoutProgress + 1;
     this->Remaining = pass.RemainingRays;
-    const bool refusedBefore = this->PassesKnown > this->CacheAge + 1 && !this->Passes.empty() &&
-      this->Passes.back().RefusedBlocks > 0;
     this->Passes.push_back(pass);
     if (this->PassesKnown > this->CacheAge)
     {
-      this->GrowCache(pass, refusedBefore);
+      this->GrowCache(pass);
     }
   }
   if (this->Remaining == 0)

@@ -105,7 +105,7 @@ private:
   bool LoadVolume();
   bool LoadWholeVolume();
   bool ResizeCache(std::int64_t slots);
-  void GrowCache(const PassRecord& pass, bool refusedBefore);
+  void GrowCache(const PassRecord& pass);
   std::int64_t SlotsForRecentImages() const;
 
   void RunPass();
@@ -127,6 +127,7 @@ private:
   std::int64_t PassesSubmitted = 0;
   std::int64_t PassesKnown = 0;
   std::int64_t CacheAge = 0; ///< the pass before which the cache was made
+  int Refusals = 0;          ///< passes in a row, of this cache, that were refused blocks
   int PassesWithoutProgress = 0;
   std::vector<std::int64_t> TouchedSlots; ///< of the last complete images, newest last
 
