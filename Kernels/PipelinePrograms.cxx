@@ -41,8 +41,8 @@ std::shared_ptr<PipelinePrograms> PipelinePrograms::OfContext(
   return programs;
 }
 
-GLuint PipelinePrograms::Get(Stage stage, const std::vector<Buffer>& bound,
-  const PipelineExtent& extent, std::string& error)
+GLuint PipelinePrograms::Get(
+  Stage stage, const std::vector<Buffer>& bound, const PipelineExtent& extent, std::string& error)
 {
   const Variant variant(stage, bound, extent.Cached, extent.Lit, extent.Detailed);
   const auto found = this->Programs.find(variant);

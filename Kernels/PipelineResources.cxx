@@ -19,9 +19,10 @@ constexpr std::int64_t LargestStaging = 1 << 12;   // bytes that stay allocated 
 constexpr std::int64_t MostSnapshots = 8;          // under way at once, with room to spare
 constexpr std::int64_t SoftwareBuffer = 1LL << 30; // llvmpipe has no limit, whatever it reports
 
-// Bytes beyond which a buffer is made sparse: NVIDIA then backs it with large pages. Random reads of a plain buffer
-// are as fast up to 128 MiB and then 10 to 400 times slower, but it is made 10 times faster, which counts for the
-// decoded blocks: their buffer comes and goes with the scene, and neighbouring rays read neighbouring values.
+// Bytes beyond which a buffer is made sparse: NVIDIA then backs it with large pages. Random reads
+// of a plain buffer are as fast up to 128 MiB and then 10 to 400 times slower, but it is made 10
+// times faster, which counts for the decoded blocks: their buffer comes and goes with the scene,
+// and neighbouring rays read neighbouring values.
 constexpr std::int64_t LargestPlain = 1LL << 27;
 constexpr std::int64_t LargestPlainValues = 1LL << 29;
 
@@ -101,8 +102,8 @@ void PipelineResources::AskLimits()
   this->LargestAllowed = this->Software ? SoftwareBuffer : static_cast<std::int64_t>(largest);
   this->LimitBuffers(0);
   const std::set<std::string> offered = OfferedExtensions();
-  this->OffersSparse = offered.count("GL_ARB_sparse_buffer") > 0 && glBufferStorage &&
-    glBufferPageCommitmentARB;
+  this->OffersSparse =
+    offered.count("GL_ARB_sparse_buffer") > 0 && glBufferStorage && glBufferPageCommitmentARB;
   GLint kibibytes[4] = { 0, 0, 0, 0 };
   if (offered.count("GL_NVX_gpu_memory_info"))
   {
@@ -369,8 +370,8 @@ bool PipelineResources::MakeBuffer(
   const GLsizeiptr size = static_cast<GLsizeiptr>(bytes);
   if (this->OffersSparse && bytes > largestPlain)
   {
-    glBufferStorage(GL_SHADER_STORAGE_BUFFER, size, nullptr,
-      GL_SPARSE_STORAGE_BIT_ARB | GL_DYNAMIC_STORAGE_BIT);
+    glBufferStorage(
+      GL_SHADER_STORAGE_BUFFER, size, nullptr, GL_SPARSE_STORAGE_BIT_ARB | GL_DYNAMIC_STORAGE_BIT);
     glBufferPageCommitmentARB(GL_SHADER_STORAGE_BUFFER, 0, size, GL_TRUE);
   }
   else
@@ -520,13 +521,13 @@ void PipelineResources::Read(Buffer buffer, std::int64_t offset, void* data, std
   {
     const GLsizeiptr part = static_cast<GLsizeiptr>(std::min(LargestRead, bytes - done));
     glBufferData(GL_COPY_WRITE_BUFFER, part, nullptr, GL_STREAM_READ);
-    glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER,
-      static_cast<GLintptr>(offset + done), 0, part);
+    glCopyBufferSubData(
+      GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(offset + done), 0, part);
     glGetBufferSubData(GL_COPY_WRITE_BUFFER, 0, part, static_cast<char*>(data) + done);
   }
   this->StagingBytes = std::min(bytes, LargestStaging);
-  glBufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(this->StagingBytes), nullptr,
-    GL_STREAM_READ);
+  glBufferData(
+    GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(this->StagingBytes), nullptr, GL_STREAM_READ);
   glBindBuffer(GL_COPY_READ_BUFFER, 0);
   glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
 }
@@ -569,8 +570,7 @@ void PipelineResources::OrderSnapshot()
   }
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glBindBuffer(GL_COPY_READ_BUFFER, this->Names[Index(Buffer::Control)]);
-  glCopyBufferSubData(
-    GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, sizeof(Snapshot::Control));
+  glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, sizeof(Snapshot::Control));
   glBindBuffer(GL_COPY_READ_BUFFER, this->Names[Index(Buffer::PassStatistics)]);
   glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, offsetof(Snapshot, Records),
     sizeof(Snapshot::Records));

@@ -30,8 +30,9 @@ constexpr int NumberOfStages = static_cast<int>(Stage::NumberOfStages);
 struct StageInfo
 {
   Stage Id;
-  const char* Name;            ///< also the name of its GLSL file
-  std::vector<Buffer> Buffers; ///< in the order of their bindings; at most 8, OpenGL 4.3's guarantee
+  const char* Name; ///< also the name of its GLSL file
+  std::vector<Buffer>
+    Buffers; ///< in the order of their bindings; at most 8, OpenGL 4.3's guarantee
 };
 
 /// The table itself, in the order of the enumeration.

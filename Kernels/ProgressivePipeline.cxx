@@ -8,13 +8,14 @@
 
 namespace
 {
-constexpr std::int64_t AutomaticValues = 1LL << 30; // bytes of decoded blocks where no budget is set
+constexpr std::int64_t AutomaticValues = 1LL
+  << 30;                                  // bytes of decoded blocks where no budget is set
 constexpr std::int64_t LeastSlots = 2048; // any 64 rays find room for all that they need at once
 constexpr std::int64_t LeastPages = 512;  // of the block map, likewise
 constexpr std::int64_t SlotsPerPage = 8;  // else
 constexpr std::int64_t FirstSlots = 16384;
-constexpr std::int64_t Growth = 4; // of the cache, at least
-constexpr int MostRefusals = 3; // in a row, of a cache that has a slot for every pixel
+constexpr std::int64_t Growth = 4;   // of the cache, at least
+constexpr int MostRefusals = 3;      // in a row, of a cache that has a slot for every pixel
 constexpr int PassesAhead = 3;       // submitted before the CPU knows whether they are needed
 constexpr int PatienceWithNone = 64; // passes that get nowhere before we give up
 constexpr std::size_t RecentImages = 8;
@@ -44,9 +45,8 @@ bool ProgressivePipeline::Initialize(const void* context)
     return false;
   }
   ControlBlock control = {};
-  for (DispatchArguments* groups :
-    { &control.CastGroups, &control.FewGroups, &control.NormalGroups, &control.RequestGroups,
-      &control.DecodeGroups, &control.EvictGroups })
+  for (DispatchArguments* groups : { &control.CastGroups, &control.FewGroups, &control.NormalGroups,
+         &control.RequestGroups, &control.DecodeGroups, &control.EvictGroups })
   {
     *groups = { 0, 1, 1, 0 };
   }
@@ -141,9 +141,8 @@ std::int64_t ProgressivePipeline::MaximumSlots() const
 std::int64_t ProgressivePipeline::GetLeastMemoryBudget() const
 {
   const std::int64_t cached = this->BytesWith(this->WithSlots(this->MinimumSlots()));
-  return this->Settings.DecodeWholeVolume
-    ? std::min(cached, this->BytesWith(this->WholeVolume()))
-    : cached;
+  return this->Settings.DecodeWholeVolume ? std::min(cached, this->BytesWith(this->WholeVolume()))
+                                          : cached;
 }
 
 //------------------------------------------------------------------------------
@@ -309,11 +308,10 @@ std::int64_t ProgressivePipeline::SlotsForRecentImages() const
   {
     return this->Extent.Slots;
   }
-  const std::int64_t most =
-    *std::max_element(this->TouchedSlots.begin(), this->TouchedSlots.end());
+  const std::int64_t most = *std::max_element(this->TouchedSlots.begin(), this->TouchedSlots.end());
   const std::int64_t enough = std::max({ 2 * most, FirstSlots, this->MinimumSlots() });
   return Growth * most < this->Extent.Slots ? std::min(enough, this->Extent.Slots)
-                                       : this->Extent.Slots;
+                                            : this->Extent.Slots;
 }
 
 //------------------------------------------------------------------------------
@@ -352,8 +350,8 @@ bool ProgressivePipeline::MakeRoom(bool newImage)
 {
   this->Budget = this->ChooseBudget();
   const PipelineExtent whole = this->WholeVolume();
-  const bool fits = this->BytesWith(whole) <= this->Budget &&
-    256 * whole.Slots <= this->Gpu.GetLargestBuffer();
+  const bool fits =
+    this->BytesWith(whole) <= this->Budget && 256 * whole.Slots <= this->Gpu.GetLargestBuffer();
   const bool cached = !(fits && this->Settings.DecodeWholeVolume);
   const std::int64_t most = this->MaximumSlots();
   if (cached && most == 0)
@@ -380,8 +378,7 @@ bool ProgressivePipeline::MakeRoom(bool newImage)
     this->VolumeLoaded = cached ? this->LoadVolume() : this->LoadWholeVolume();
   }
   return this->GetError().empty() && this->Gpu.Allocate(Lifetime::Image, this->Extent) &&
-    (cached ? this->MakeCache(most, newImage)
-            : this->Gpu.Allocate(Lifetime::Cache, this->Extent));
+    (cached ? this->MakeCache(most, newImage) : this->Gpu.Allocate(Lifetime::Cache, this->Extent));
 }
 
 // The cache begins small, and is left alone while an image is under way.
@@ -464,18 +461,17 @@ void ProgressivePipeline::RunPass()
 
 // The GPU is always given work ahead of what the CPU knows; passes that turn out not to be needed
 // have no work groups.
-void ProgressivePipeline::RunPasses(
-  int maximum, bool eager, const std::function<bool()>& stop)
+void ProgressivePipeline::RunPasses(int maximum, bool eager, const std::function<bool()>& stop)
 {
   const std::int64_t ahead =
     eager || this->Gpu.IsSoftware() || !this->Extent.Cached ? 1 : PassesAhead;
-  const std::int64_t last = maximum > 0 ? this->PassesSubmitted + maximum
-                                        : std::numeric_limits<std::int64_t>::max();
+  const std::int64_t last =
+    maximum > 0 ? this->PassesSubmitted + maximum : std::numeric_limits<std::int64_t>::max();
   bool more = this->Remaining > 0;
   while (more || this->PassesKnown < this->PassesSubmitted)
   {
-    while (more && this->PassesSubmitted < this->PassesKnown + ahead &&
-      this->PassesSubmitted < last)
+    while (
+      more && this->PassesSubmitted < this->PassesKnown + ahead && this->PassesSubmitted < last)
     {
       this->RunPass();
     }
@@ -503,8 +499,8 @@ void ProgressivePipeline::TakeSnapshot()
   {
     TimedPass pass;
     static_cast<PassRecord&>(pass) = snapshot.Records[(total - 1) % PassRecords];
-    const bool gotOn = pass.Pairs > 0 || pass.DecodedBlocks > 0 ||
-      pass.RemainingRays != this->Remaining;
+    const bool gotOn =
+      pass.Pairs > 0 || pass.DecodedBlocks > 0 || pass.RemainingRays != this->Remaining;
     this->PassesWithoutProgress = gotOn ? 0 : this->PassesWithoutProgress + 1;
     this->Remaining = pass.RemainingRays;
     this->Passes.push_back(pass);
