@@ -286,8 +286,8 @@ bool ProgressivePipeline::ResizeCache(std::int64_t slots)
 }
 
 // Where an image needs more than fits, and there is room, the cache grows: seldom and by much, as
-// GPUs take long to make memory. Beyond a slot a pixel it does so only where pass after pass is
-// refused blocks: up to then eviction helps, and another pass costs less than memory does.
+// GPUs take long to make memory. Beyond a slot a pixel it does so, then twofold, only where pass
+// after pass is refused blocks: up to then eviction helps, and another pass costs less than memory.
 // It loses what it holds; rays ask again for what they still need.
 void ProgressivePipeline::GrowCache(const PassRecord& pass)
 {
@@ -297,7 +297,9 @@ void ProgressivePipeline::GrowCache(const PassRecord& pass)
   this->Refusals = pass.RefusedBlocks > 0 ? this->Refusals + 1 : 0;
   if (this->Refusals > (small ? 0 : MostRefusals) && this->Extent.Slots < most)
   {
-    this->ResizeCache(std::min(std::max(Growth * this->Extent.Slots, 2 * needed), most));
+    const std::int64_t enough =
+      small ? std::max(Growth * this->Extent.Slots, 2 * needed) : 2 * this->Extent.Slots;
+    this->ResizeCache(std::min(enough, most));
   }
 }
 
