@@ -180,6 +180,7 @@ vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceMapper::Internals::Compres
   {
     single->GetPointData()->SetScalars(array);
   }
+  single->GetCellData()->AddArray(image->GetCellGhostArray()); // of a piece of a volume
   vtkNew<vtkImageZFPCompress> compress;
   compress->SetInputData(single);
   compress->SetInputArrayToProcess(0, 0, 0,
@@ -420,10 +421,9 @@ void vtkProgressiveIsosurfaceMapper::Internals::FillStatistics()
   {
     const TimedPass& p = passes[i];
     const double row[] = { static_cast<double>(i), static_cast<double>(p.ActiveRays),
-      static_cast<double>(p.Speculation), static_cast<double>(p.Pairs),
-      p.VisibleBlocks + uncounted, p.ActiveBlocks + uncounted,
-      static_cast<double>(p.DecodedBlocks), static_cast<double>(p.CachedBlocks),
-      1.0 - p.RemainingRays / pixels, p.ElapsedMilliseconds };
+      static_cast<double>(p.Speculation), static_cast<double>(p.Pairs), p.VisibleBlocks + uncounted,
+      p.ActiveBlocks + uncounted, static_cast<double>(p.DecodedBlocks),
+      static_cast<double>(p.CachedBlocks), 1.0 - p.RemainingRays / pixels, p.ElapsedMilliseconds };
     for (int column = 0; column < table->GetNumberOfColumns(); ++column)
     {
       vtkDoubleArray::SafeDownCast(table->GetColumn(column))
