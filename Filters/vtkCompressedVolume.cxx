@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkCompressedVolume.h"
 
+#include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
@@ -9,12 +10,14 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkStringArray.h"
+#include "vtkStructuredData.h"
 #include "vtkTypeInt64Array.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVariant.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <sstream>
 
@@ -31,9 +34,10 @@ const char* const ScalarTypeName = "ProgIso.ZFP.ScalarType";
 const char* const ArrayNameName = "ProgIso.ZFP.ArrayName";
 const char* const ComponentName = "ProgIso.ZFP.Component";
 const char* const AssociationName = "ProgIso.ZFP.Association";
+const char* const ExtentName = "ProgIso.ZFP.Extent";
 
 const char* const AllNames[] = { VersionName, StreamName, BlockBitsName, DimensionsName, RangeName,
-  ScalarTypeName, ArrayNameName, ComponentName, AssociationName };
+  ScalarTypeName, ArrayNameName, ComponentName, AssociationName, ExtentName };
 
 //------------------------------------------------------------------------------
 // Values of a field data array; an error sentence when it is not `count` integers (or numbers).
@@ -121,6 +125,47 @@ bool IsNumericType(int type)
       return false;
   }
 }
+
+//------------------------------------------------------------------------------
+bool Contains(const int outer[6], const int inner[6])
+{
+  return outer[0] <= inner[0] && inner[1] <= outer[1] && outer[2] <= inner[2] &&
+    inner[3] <= outer[3] && outer[4] <= inner[4] && inner[5] <= outer[5];
+}
+
+//------------------------------------------------------------------------------
+vtkTypeUInt64 LoadWord(const unsigned char* stream, vtkTypeInt64 index)
+{
+  vtkTypeUInt64 word;
+  std::memcpy(&word, stream + 8 * index, 8);
+  return word;
+}
+
+//------------------------------------------------------------------------------
+// Appends bits [first, first + count) of a stream to one that is zero from bit `end` on.
+void AppendBits(const unsigned char* from, vtkTypeInt64 first, vtkTypeInt64 count,
+  unsigned char* to, vtkTypeInt64& end)
+{
+  while (count > 0)
+  {
+    const int shift = first % 64, offset = end % 64;
+    const int taken = static_cast<int>(std::min<vtkTypeInt64>(64 - offset, count));
+    vtkTypeUInt64 bits = LoadWord(from, first / 64) >> shift;
+    if (shift + taken > 64)
+    {
+      bits |= LoadWord(from, first / 64 + 1) << (64 - shift);
+    }
+    if (taken < 64)
+    {
+      bits &= (vtkTypeUInt64(1) << taken) - 1;
+    }
+    const vtkTypeUInt64 word = LoadWord(to, end / 64) | bits << offset;
+    std::memcpy(to + end / 64 * 8, &word, 8);
+    first += taken;
+    end += taken;
+    count -= taken;
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -177,6 +222,10 @@ void vtkCompressedVolume::Clear()
 {
   this->BlockBits = 0;
   std::fill_n(this->Dimensions, 3, 0);
+  for (int i = 0; i < 6; ++i)
+  {
+    this->Extent[i] = -(i % 2);
+  }
   std::fill_n(this->Range, 2, 0.0);
   this->ScalarType = 0;
   this->ArrayName.clear();
@@ -263,7 +312,40 @@ std::string vtkCompressedVolume::ReadNumbers(vtkImageData* image)
 }
 
 //------------------------------------------------------------------------------
-std::string vtkCompressedVolume::CheckGeometry(vtkImageData* image) const
+// Sets Extent to that of the stream: the image's own, or one around it that the stream names.
+bool vtkCompressedVolume::FindExtent(vtkImageData* image, const vtkTypeInt64 dims[3])
+{
+  image->GetExtent(this->Extent);
+  const int cells = this->Association == CellData ? 1 : 0;
+  const auto fits = [&](const vtkTypeInt64* extent)
+  {
+    return extent[1] - extent[0] + 1 - cells == dims[0] &&
+      extent[3] - extent[2] + 1 - cells == dims[1] && extent[5] - extent[4] + 1 - cells == dims[2];
+  };
+  vtkTypeInt64 extent[6];
+  std::copy_n(this->Extent, 6, extent);
+  if (fits(extent))
+  {
+    return true;
+  }
+  if (!GetIntegers(image->GetFieldData(), ExtentName, 6, extent).empty() || !fits(extent))
+  {
+    return false;
+  }
+  const int own[6] = { this->Extent[0], this->Extent[1], this->Extent[2], this->Extent[3],
+    this->Extent[4], this->Extent[5] };
+  const vtkTypeInt64 most = std::numeric_limits<int>::max() / 2;
+  if (!std::all_of(
+        extent, extent + 6, [&](vtkTypeInt64 value) { return value >= -most && value <= most; }))
+  {
+    return false;
+  }
+  std::copy_n(extent, 6, this->Extent);
+  return Contains(this->Extent, own);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkCompressedVolume::CheckGeometry(vtkImageData* image)
 {
   vtkTypeInt64 dims[3];
   std::string error = GetIntegers(image->GetFieldData(), DimensionsName, 3, dims);
@@ -271,7 +353,8 @@ std::string vtkCompressedVolume::CheckGeometry(vtkImageData* image) const
   {
     return error;
   }
-  const int* extent = image->GetExtent();
+  const bool found = this->FindExtent(image, dims);
+  const int* extent = found ? this->Extent : image->GetExtent();
   const bool cells = this->Association == CellData;
   std::ostringstream message;
   for (int axis = 0; axis < 3; ++axis)
@@ -290,6 +373,10 @@ std::string vtkCompressedVolume::CheckGeometry(vtkImageData* image) const
               << ", at least 2 and at most 2^31-1 are needed";
       break;
     }
+  }
+  if (!found && message.str().empty())
+  {
+    message << ExtentName << " does not contain the image's extent";
   }
   return message.str();
 }
@@ -340,6 +427,8 @@ void vtkCompressedVolume::Write(vtkImageData* image) const
   StoreNumbers<vtkIntArray>(fields, ScalarTypeName, &this->ScalarType, 1);
   StoreNumbers<vtkIntArray>(fields, ComponentName, &this->Component, 1);
   StoreNumbers<vtkIntArray>(fields, AssociationName, &this->Association, 1);
+  StoreNumbers<vtkIntArray>(
+    fields, ExtentName, this->Extent[0] > this->Extent[1] ? image->GetExtent() : this->Extent, 6);
   StoreNumbers<vtkStringArray>(fields, ArrayNameName, &this->ArrayName, 1);
   this->Stream->SetName(StreamName);
   fields->AddArray(this->Stream);
@@ -351,6 +440,105 @@ void vtkCompressedVolume::Remove(vtkImageData* image)
   for (const char* name : AllNames)
   {
     image->GetFieldData()->RemoveArray(name);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkCompressedVolume::GetOwnExtent(vtkImageData* image, int own[6])
+{
+  image->GetExtent(own);
+  vtkUnsignedCharArray* ghosts = image->GetCellGhostArray();
+  if (!ghosts || image->GetNumberOfPoints() == 0)
+  {
+    return;
+  }
+  const unsigned char* begin = ghosts->GetPointer(0);
+  const unsigned char* end = begin + ghosts->GetNumberOfValues();
+  const auto isOwn = [](unsigned char mark)
+  { return !(mark & vtkDataSetAttributes::DUPLICATECELL); };
+  const unsigned char* first = std::find_if(begin, end, isOwn);
+  if (first == end)
+  {
+    own[1] = own[0] - 1;
+    return;
+  }
+  const unsigned char* last = end - 1;
+  while (!isOwn(*last))
+  {
+    --last;
+  }
+  int low[3], high[3];
+  vtkStructuredData::ComputeCellStructuredCoordsForExtent(first - begin, image->GetExtent(), low);
+  vtkStructuredData::ComputeCellStructuredCoordsForExtent(last - begin, image->GetExtent(), high);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    own[2 * axis] = low[axis];
+    own[2 * axis + 1] = std::min(high[axis] + 1, own[2 * axis + 1]);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkCompressedVolume::GetCoveringExtent(
+  const int own[6], const int whole[6], int association, int covering[6])
+{
+  const int cells = association == CellData ? 1 : 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int begin = whole[2 * axis];
+    // with cell data the sample at own's upper face is the next piece's first
+    const int low = std::max(own[2 * axis] - 1 - begin, 0) / 4 * 4;
+    const int high = (own[2 * axis + 1] + 1 - begin) / 4 * 4 + 3 + cells;
+    covering[2 * axis] = begin + low;
+    covering[2 * axis + 1] = std::min(begin + high, whole[2 * axis + 1]);
+  }
+}
+
+//------------------------------------------------------------------------------
+bool vtkCompressedVolume::Covers(vtkImageData* image) const
+{
+  return std::equal(this->Extent, this->Extent + 6, image->GetExtent());
+}
+
+//------------------------------------------------------------------------------
+void vtkCompressedVolume::Crop(const int own[6])
+{
+  int kept[6], first[3], count[3], dims[3];
+  GetCoveringExtent(own, this->Extent, this->Association, kept);
+  if (!this->Stream || std::equal(kept, kept + 6, this->Extent))
+  {
+    return;
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    dims[axis] = kept[2 * axis + 1] - kept[2 * axis] + (this->Association == CellData ? 0 : 1);
+    first[axis] = (kept[2 * axis] - this->Extent[2 * axis]) / 4;
+    count[axis] = (dims[axis] + 3) / 4;
+  }
+  vtkNew<vtkUnsignedCharArray> stream;
+  stream->SetNumberOfValues(StreamBytesFor(dims, this->BlockBits));
+  this->CopyBlocks(first, count, stream);
+  this->SetStream(stream);
+  this->SetDimensions(dims);
+  this->SetExtent(kept);
+}
+
+//------------------------------------------------------------------------------
+// A box of blocks, row by row: the blocks of a row lie side by side.
+void vtkCompressedVolume::CopyBlocks(
+  const int first[3], const int count[3], vtkUnsignedCharArray* target) const
+{
+  int blocks[3];
+  this->GetBlocks(blocks);
+  target->Fill(0);
+  vtkTypeInt64 end = 0;
+  for (vtkTypeInt64 z = first[2]; z < first[2] + count[2]; ++z)
+  {
+    for (vtkTypeInt64 y = first[1]; y < first[1] + count[1]; ++y)
+    {
+      const vtkTypeInt64 block = first[0] + blocks[0] * (y + blocks[1] * z);
+      AppendBits(this->Stream->GetPointer(0), block * this->BlockBits,
+        static_cast<vtkTypeInt64>(count[0]) * this->BlockBits, target->GetPointer(0), end);
+    }
   }
 }
 
@@ -402,6 +590,12 @@ void vtkCompressedVolume::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "BlockBits: " << this->BlockBits << "\n";
   os << indent << "Dimensions: " << this->Dimensions[0] << " " << this->Dimensions[1] << " "
      << this->Dimensions[2] << "\n";
+  os << indent << "Extent:";
+  for (const int bound : this->Extent)
+  {
+    os << " " << bound;
+  }
+  os << "\n";
   os << indent << "Range: " << this->Range[0] << " " << this->Range[1] << "\n";
   os << indent << "ScalarType: " << this->ScalarType << "\n";
   os << indent << "ArrayName: " << this->ArrayName << "\n";

@@ -17,6 +17,13 @@
  * - ProgIso.ZFP.ArrayName (string): name of the original array
  * - ProgIso.ZFP.Component (int): component of the original array
  * - ProgIso.ZFP.Association (int): 0 point data, 1 cell data
+ * - ProgIso.ZFP.Extent (6 integers, optional): the image extent that the stream covers
+ *
+ * The stream covers the image, or more than it: a piece of an image that several processes share,
+ * or a subset cut out of one, takes the stream of a larger extent with it. What lies beyond the
+ * image is then not part of it, but its samples serve to interpolate and to shade at the piece's
+ * faces (ghost samples). Without Extent, or where the image has the stream's size, the two are the
+ * same.
  *
  * The stream is zfp's (codec 5) for a 3-D float32 array, without zfp's header: blocks in x-fastest
  * order, block i at bit i*BlockBits (bits count from the least significant one of 64-bit
@@ -85,6 +92,25 @@ public:
   static vtkTypeInt64 StreamBytesFor(const int dims[3], int blockBits);
 
   /**
+   * The extent of an image without its ghost cells, as vtkGhostType marks them; they must be layers
+   * around the rest. Empty where there is nothing else.
+   */
+  static void GetOwnExtent(vtkImageData* image, int own[6]);
+
+  /**
+   * The extent that a stream should cover so that the part `own` of an image of extent `whole`
+   * looks as the whole does: a sample more on each side, for normals, and then whole blocks,
+   * counted from the first sample of `whole`, so that each decodes to the same values as in a
+   * stream of the whole. At most NumberOfGhostLevels beyond `own`, and nothing beyond `whole`.
+   */
+  static void GetCoveringExtent(
+    const int own[6], const int whole[6], int association, int covering[6]);
+  enum
+  {
+    NumberOfGhostLevels = 5
+  };
+
+  /**
    * Take metadata and stream (by reference) from an image. Returns false, leaving this object
    * empty, when something is missing, inconsistent with the image, truncated or out of range;
    * GetErrorMessage() then holds one sentence that names it.
@@ -96,6 +122,12 @@ public:
    * there. The inverse of Read(); used by what makes streams.
    */
   void Write(vtkImageData* image) const;
+
+  /**
+   * Keep of the stream only what GetCoveringExtent() tells for a part of the volume, block by block
+   * as they are. `own` lies within GetExtent().
+   */
+  void Crop(const int own[6]);
 
   /**
    * Remove the arrays that Write() stores from an image's field data.
@@ -118,12 +150,25 @@ public:
 
   ///@{
   /**
-   * Samples per axis: the image's point dimensions, or its cell dimensions for cell data. At
-   * least 2.
+   * Samples per axis of the stream: point dimensions of its extent, or cell dimensions for cell
+   * data. At least 2.
    */
   vtkGetVector3Macro(Dimensions, int);
   vtkSetVector3Macro(Dimensions, int);
   ///@}
+
+  ///@{
+  /**
+   * The image extent that the stream covers. Write() takes the image's own where it was not set.
+   */
+  vtkGetVector6Macro(Extent, int);
+  vtkSetVector6Macro(Extent, int);
+  ///@}
+
+  /**
+   * Whether the stream covers an image and nothing else.
+   */
+  bool Covers(vtkImageData* image) const;
 
   ///@{
   /**
@@ -183,10 +228,13 @@ private:
   std::string Check(vtkImageData* image);
   std::string ReadNumbers(vtkImageData* image);
   std::string ReadStreamAndName(vtkImageData* image);
-  std::string CheckGeometry(vtkImageData* image) const;
+  std::string CheckGeometry(vtkImageData* image);
+  bool FindExtent(vtkImageData* image, const vtkTypeInt64 dims[3]);
+  void CopyBlocks(const int first[3], const int count[3], vtkUnsignedCharArray* target) const;
 
   int BlockBits = 0;
   int Dimensions[3] = { 0, 0, 0 };
+  int Extent[6] = { 0, -1, 0, -1, 0, -1 };
   double Range[2] = { 0.0, 0.0 };
   int ScalarType = 0;
   std::string ArrayName;

@@ -8,10 +8,12 @@
 #include "vtkErrorCode.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkZFPBlocks.h"
@@ -70,6 +72,34 @@ std::string NameOf(vtkDataArray* array)
 }
 
 //------------------------------------------------------------------------------
+// An array's tuples within `part` of `extent`, both in samples.
+vtkSmartPointer<vtkDataArray> CutOut(vtkDataArray* array, const int extent[6], const int part[6])
+{
+  if (std::equal(part, part + 6, extent))
+  {
+    return array;
+  }
+  const vtkIdType row = part[1] - part[0] + 1;
+  const vtkIdType rows[2] = { extent[1] - extent[0] + 1, extent[3] - extent[2] + 1 };
+  auto cut = vtkSmartPointer<vtkDataArray>::Take(array->NewInstance());
+  cut->SetName(array->GetName());
+  cut->SetNumberOfComponents(array->GetNumberOfComponents());
+  cut->SetNumberOfTuples(row * (part[3] - part[2] + 1) * (part[5] - part[4] + 1));
+  vtkIdType end = 0;
+  for (int z = part[4]; z <= part[5]; ++z)
+  {
+    for (int y = part[2]; y <= part[3]; ++y)
+    {
+      const vtkIdType begin =
+        part[0] - extent[0] + rows[0] * (y - extent[2] + rows[1] * (z - extent[4]));
+      cut->InsertTuples(end, row, begin, array);
+      end += row;
+    }
+  }
+  return cut;
+}
+
+//------------------------------------------------------------------------------
 // By identity: point and cell arrays may have the same name.
 bool Contains(vtkDataSetAttributes* attributes, vtkDataArray* array)
 {
@@ -107,14 +137,67 @@ int vtkImageZFPCompress::RequestInformation(
 }
 
 //------------------------------------------------------------------------------
-// A stream is made of the whole image, whatever part of it is asked for.
+// A stream is made of the whole image, or of this process' piece of it with ghost cells around.
 int vtkImageZFPCompress::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
   vtkInformation* in = inputVector[0]->GetInformationObject(0);
   in->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(),
     in->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()), 6);
+  vtkInformationIntegerKey* ghosts =
+    vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS();
+  if (in->Get(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
+  {
+    in->Set(ghosts, std::max(in->Get(ghosts), +vtkCompressedVolume::NumberOfGhostLevels));
+  }
   return 1;
+}
+
+//------------------------------------------------------------------------------
+// What of the input is compressed. Extents are the image's.
+struct vtkImageZFPCompress::Part
+{
+  int Association = vtkCompressedVolume::PointData;
+  int Whole[6];   // of all processes' pieces
+  int Input[6];   // of the input, with ghost cells
+  int Own[6];     // without
+  int Covered[6]; // by the stream
+  int Samples[3]; // in the stream, per axis
+
+  void Find(vtkImageData* input, vtkInformation* information);
+  void ToSamples(const int extent[6], int samples[6]) const;
+};
+
+//------------------------------------------------------------------------------
+void vtkImageZFPCompress::Part::Find(vtkImageData* input, vtkInformation* information)
+{
+  input->GetExtent(this->Input);
+  information->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), this->Whole);
+  vtkCompressedVolume::GetOwnExtent(input, this->Own);
+  std::copy_n(this->Input, 6, this->Covered);
+  if (!std::equal(this->Own, this->Own + 6, this->Input))
+  {
+    vtkCompressedVolume::GetCoveringExtent(
+      this->Own, this->Whole, this->Association, this->Covered);
+  }
+  const int cells = this->Association == vtkCompressedVolume::CellData ? 1 : 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    int* covered = this->Covered + 2 * axis;
+    covered[0] = std::max(covered[0], this->Input[2 * axis]);
+    covered[1] = std::min(covered[1], this->Input[2 * axis + 1]);
+    this->Samples[axis] = covered[1] - covered[0] + 1 - cells;
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkImageZFPCompress::Part::ToSamples(const int extent[6], int samples[6]) const
+{
+  std::copy_n(extent, 6, samples);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    samples[2 * axis + 1] -= this->Association == vtkCompressedVolume::CellData ? 1 : 0;
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -129,9 +212,31 @@ int vtkImageZFPCompress::RequestData(
   output->GetFieldData()->PassData(input->GetFieldData());
   vtkCompressedVolume::Remove(output);
 
-  int association = vtkCompressedVolume::PointData;
-  vtkDataArray* array = this->FindArray(inputVector, input, association);
-  if (!array || !this->Compress(input, array, association, output))
+  vtkInformation* in = inputVector[0]->GetInformationObject(0);
+  if (input->GetNumberOfPoints() == 0 &&
+    in->Get(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
+  {
+    return 1; // this process has no piece
+  }
+  Part part;
+  vtkDataArray* array = this->FindArray(inputVector, input, part.Association);
+  if (!array)
+  {
+    this->SetErrorCode(vtkErrorCode::UserError);
+    return 1;
+  }
+  part.Find(input, in);
+  output->SetExtent(part.Own);
+  if (output->GetNumberOfPoints() == 0)
+  {
+    return 1; // nothing but ghost cells
+  }
+  const std::string error = this->Check(input, array, part);
+  if (!error.empty())
+  {
+    vtkErrorMacro(<< error);
+  }
+  if (!error.empty() || !this->Compress(array, part, output))
   {
     this->SetErrorCode(vtkErrorCode::UserError);
   }
@@ -168,18 +273,14 @@ vtkDataArray* vtkImageZFPCompress::FindArray(
 }
 
 //------------------------------------------------------------------------------
-// What is wrong with the settings or the array's shape; else the samples per axis.
-std::string vtkImageZFPCompress::Check(
-  vtkImageData* input, vtkDataArray* array, int association, int dims[3])
+// What is wrong with the settings or the array's shape.
+std::string vtkImageZFPCompress::Check(vtkImageData* input, vtkDataArray* array, Part& part)
 {
   std::ostringstream error;
-  input->GetDimensions(dims);
-  vtkIdType samples = 1;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    dims[axis] -= association == vtkCompressedVolume::CellData ? 1 : 0;
-    samples *= dims[axis];
-  }
+  const int* dims = part.Samples;
+  const vtkIdType samples = part.Association == vtkCompressedVolume::CellData
+    ? input->GetNumberOfCells()
+    : input->GetNumberOfPoints();
   if (vtkCompressedVolume::BlockBitsForRate(this->Rate) == 0)
   {
     error << "Rate is " << this->Rate << " bits per sample: it must be in (0, 32].";
@@ -204,27 +305,24 @@ std::string vtkImageZFPCompress::Check(
 }
 
 //------------------------------------------------------------------------------
-bool vtkImageZFPCompress::Compress(
-  vtkImageData* input, vtkDataArray* array, int association, vtkImageData* output)
+bool vtkImageZFPCompress::Compress(vtkDataArray* array, const Part& part, vtkImageData* output)
 {
-  int dims[3];
-  std::string error = this->Check(input, array, association, dims);
-  if (!error.empty())
-  {
-    vtkErrorMacro(<< error);
-    return false;
-  }
+  const int* dims = part.Samples;
+  int given[6], covered[6];
+  part.ToSamples(part.Input, given);
+  part.ToSamples(part.Covered, covered);
+  const vtkSmartPointer<vtkDataArray> samples = CutOut(array, given, covered);
   const int blockBits = vtkCompressedVolume::BlockBitsForRate(this->Rate);
   vtkNew<vtkUnsignedCharArray> stream;
   stream->SetNumberOfValues(vtkCompressedVolume::StreamBytesFor(dims, blockBits));
   vtkZFPBlocks blocks(dims, blockBits, stream->GetPointer(0), this->NumberOfThreads);
   vtkZFPBlocks::Summary summary;
-  if (!blocks.Encode(array, this->Component, 0, blocks.GetNumberOfLayers(), summary,
+  if (!blocks.Encode(samples, this->Component, 0, blocks.GetNumberOfLayers(), summary,
         vtkZFPBlocks::ReportOf(this)))
   {
     return false;
   }
-  error = summary.GetObjection();
+  const std::string error = summary.GetObjection();
   if (!error.empty())
   {
     vtkErrorMacro("Array '" << NameOf(array) << "' has " << error);
@@ -238,7 +336,8 @@ bool vtkImageZFPCompress::Compress(
   volume->SetScalarType(array->GetDataType());
   volume->SetArrayName(NameOf(array));
   volume->SetComponent(this->Component);
-  volume->SetAssociation(association);
+  volume->SetAssociation(part.Association);
+  volume->SetExtent(part.Covered);
   volume->SetStream(stream);
   volume->Write(output);
   return true;

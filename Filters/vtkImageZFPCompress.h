@@ -9,6 +9,12 @@
  * spacing, origin and direction matrix, no point or cell arrays, the input's field data, and the
  * compressed stream with its metadata in the field data.
  *
+ * Where several processes share an image, each compresses its piece: ghost cells are left out of
+ * the output's extent, but the stream covers as many of their samples as the piece needs to look as
+ * the whole does, in the blocks of the whole (see vtkCompressedVolume::GetCoveringExtent()). The
+ * filter asks for enough ghost levels; put a vtkGhostCellsGenerator before it where the source has
+ * none.
+ *
  * The array is the one of SetInputArrayToProcess(0, ...), by default the active point scalars, else
  * the first point array, else the active cell scalars, else the first cell array.
  *
@@ -23,7 +29,7 @@
  * the message counts them); an array so small (below 2^-74, about 5e-23) that zeros for values
  * below 2^-98 would show.
  *
- * The filter asks for the whole extent of its input.
+ * The filter asks for the whole extent of its input, or the piece of it that is asked for.
  *
  * @sa vtkImageZFPDecompress vtkCompressedVolume vtkZFPWriter
  */
@@ -92,8 +98,9 @@ private:
 
   vtkDataArray* FindArray(
     vtkInformationVector** inputVector, vtkImageData* input, int& association);
-  std::string Check(vtkImageData* input, vtkDataArray* array, int association, int dims[3]);
-  bool Compress(vtkImageData* input, vtkDataArray* array, int association, vtkImageData* output);
+  struct Part;
+  std::string Check(vtkImageData* input, vtkDataArray* array, Part& part);
+  bool Compress(vtkDataArray* array, const Part& part, vtkImageData* output);
 
   double Rate = 8.0;
   int Component = 0;

@@ -82,6 +82,14 @@ int vtkImageZFPDecompress::RequestData(
     return 1; // the message is out already: the executive need not add its own
   }
 
+  int own[6];
+  input->GetExtent(own);
+  volume->Crop(own);
+  output->SetExtent(volume->GetExtent());
+  if (!volume->Covers(input))
+  {
+    output->GenerateGhostArray(own); // the samples around a piece
+  }
   int dims[3];
   volume->GetDimensions(dims);
   vtkNew<vtkFloatArray> samples;

@@ -142,6 +142,12 @@ void vtkZFPWriter::WriteData()
     vtkErrorMacro("The input is " << volume->GetErrorMessage() << ".");
     this->SetErrorCode(vtkErrorCode::UserError);
   }
+  else if (!volume->Covers(vtkImageData::SafeDownCast(this->GetInput())))
+  {
+    vtkErrorMacro("The input is a piece of a compressed volume, and a zfp file holds a whole one: "
+                  "decompress it, compress it again and write that.");
+    this->SetErrorCode(vtkErrorCode::UserError);
+  }
   else
   {
     this->WriteFile(volume);

@@ -12,7 +12,7 @@ struct Ray
   dvec3 Direction; // index space, per unit of t
   dvec3 Inverse;   // 1 / direction; finite and huge where the ray is parallel to the planes
   ivec3 Step;      // +1 or -1
-  double Enter, Leave; // parameters at which the ray enters and leaves the volume
+  double Enter, Leave; // parameters at which the ray enters and leaves the volume, or the part of it that is drawn
 };
 
 // Parameters at which the ray crosses the plane of this index on each axis.
@@ -56,8 +56,8 @@ Ray CameraRay(uint pixel)
   ray.Direction = direction;
   ray.Inverse = dvec3(FiniteInverse(direction.x), FiniteInverse(direction.y), FiniteInverse(direction.z));
   ray.Step = 1 - 2 * ivec3(lessThan(direction, dvec3(0.0LF)));
-  dvec3 first = PlanesT(ray, ivec3(0));
-  dvec3 last = PlanesT(ray, scene.Samples.xyz - 1);
+  dvec3 first = PlanesT(ray, scene.FirstDrawn.xyz);
+  dvec3 last = PlanesT(ray, scene.LastDrawn.xyz);
   ray.Enter = max(LargestOf(min(first, last)), scene.RayRange.x);
   ray.Leave = min(SmallestOf(max(first, last)), scene.RayRange.y);
   return ray;

@@ -23,6 +23,8 @@ layout(std140, binding = 0) uniform Scene
   dvec4 EyeOrigin[3]; // the same in view coordinates
   dvec4 EyeDirection[3];
   dvec4 RayRange;    // near and far clipping distance
+  ivec4 FirstDrawn;  // the surface is drawn between these samples; a piece of a volume has more, for normals
+  ivec4 LastDrawn;
   ivec4 Samples;     // samples per axis; w: bits per block of the stream
   ivec4 Blocks;      // ZFP blocks per axis; w: their number
   ivec4 CoarseCells; // macrocells of 4^3 blocks per axis; w: their number

@@ -22,6 +22,8 @@ struct SceneBlock
   double EyeOrigin[3][4] = {};
   double EyeDirection[3][4] = {};
   double RayRange[4] = {};
+  std::int32_t FirstDrawn[4] = {};
+  std::int32_t LastDrawn[4] = {};
   std::int32_t Samples[4] = {};
   std::int32_t Blocks[4] = {};
   std::int32_t CoarseCells[4] = {};
@@ -38,6 +40,6 @@ struct SceneBlock
   SceneLight Lights[MaximumLights] = {};
 };
 static_assert(
-  sizeof(SceneBlock) == 13 * 32 + 7 * 16 + 64 + 4 * 16 + 16 * 32, "std140 layout of Scene.glsl");
+  sizeof(SceneBlock) == 13 * 32 + 9 * 16 + 64 + 4 * 16 + 16 * 32, "std140 layout of Scene.glsl");
 
 #endif

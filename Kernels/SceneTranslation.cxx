@@ -73,7 +73,7 @@ void SamplesToWorld(
   vtkVolume* volume, vtkImageData* image, vtkCompressedVolume* compressed, vtkMatrix4x4* matrix)
 {
   const double shift = compressed->GetAssociation() == vtkCompressedVolume::CellData ? 0.5 : 0.0;
-  const int* extent = image->GetExtent();
+  const int* extent = compressed->GetExtent();
   vtkNew<vtkMatrix4x4> offset;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -81,6 +81,19 @@ void SamplesToWorld(
   }
   vtkMatrix4x4::Multiply4x4(image->GetIndexToPhysicalMatrix(), offset, matrix);
   vtkMatrix4x4::Multiply4x4(volume->GetMatrix(), matrix, matrix);
+}
+
+// The image's part of the samples; a piece with cell data reaches to the next one's first samples.
+void TranslatePart(vtkImageData* image, vtkCompressedVolume* compressed, SceneBlock& scene)
+{
+  const int* drawn = image->GetExtent();
+  const int* samples = compressed->GetExtent();
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    scene.FirstDrawn[axis] = drawn[2 * axis] - samples[2 * axis];
+    scene.LastDrawn[axis] =
+      std::min(drawn[2 * axis + 1] - samples[2 * axis], compressed->GetDimensions()[axis] - 1);
+  }
 }
 
 void TranslateRays(const EyeRays& rays, vtkMatrix4x4* eyeToIndex, SceneBlock& scene)
@@ -201,7 +214,7 @@ bool NearlySame(const double* a, const double* b)
   return difference <= 1e-7 * size;
 }
 
-constexpr std::size_t ExactBegins = offsetof(SceneBlock, Samples);
+constexpr std::size_t ExactBegins = offsetof(SceneBlock, FirstDrawn);
 }
 
 SceneBlock TranslateScene(
@@ -221,6 +234,7 @@ SceneBlock TranslateScene(
 
   TranslateRays(MakeEyeRays(projection, scene.Image[0], scene.Image[1]), eyeToIndex, scene);
   camera->GetClippingRange(scene.RayRange);
+  TranslatePart(image, compressed, scene);
   vtkVolumeProperty* property = volume->GetProperty();
   const double isovalue = property->GetIsoSurfaceValues()->GetValue(0);
   scene.Isovalue[0] = static_cast<float>(isovalue);
@@ -270,8 +284,8 @@ float HitDistance(const SceneBlock& scene, int x, int y, std::uint32_t key)
     const double direction = scene.RayDirection[0][axis] + px * scene.RayDirection[1][axis] +
       py * scene.RayDirection[2][axis];
     const double inverse = std::abs(direction) > 1e-290 ? 1.0 / direction : 1e290;
-    const double first = -origin * inverse;
-    const double last = (scene.Samples[axis] - 1 - origin) * inverse;
+    const double first = (scene.FirstDrawn[axis] - origin) * inverse;
+    const double last = (scene.LastDrawn[axis] - origin) * inverse;
     enter = std::max(enter, std::min(first, last));
     leave = std::min(leave, std::max(first, last));
     const double eye = scene.EyeDirection[0][axis] + px * scene.EyeDirection[1][axis] +

@@ -180,6 +180,7 @@ vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceMapper::Internals::Compres
   {
     single->GetPointData()->SetScalars(array);
   }
+  single->GetCellData()->AddArray(image->GetCellGhostArray()); // of a piece of a volume
   vtkNew<vtkImageZFPCompress> compress;
   compress->SetInputData(single);
   compress->SetInputArrayToProcess(0, 0, 0,

@@ -48,6 +48,13 @@ IMAGE_LEVELS = 12
 #: Mean difference over the whole image, in grey levels.
 IMAGE_MEAN = 0.5
 
+#: The image that several processes make of their pieces against that of one: they decode the same values and find the same hits but for
+#: the last bits of a ray's coordinates, which count from each piece's own corner. So every pixel is within a rounding of its colour ...
+PROCESSES_LEVELS = 2
+
+#: ... but for this part of them, where a ray grazes the surface at a seam.
+PROCESSES_PIXELS = 5e-5
+
 # --- memory ----------------------------------------------------------------------------------------------------------------------
 
 #: GPU memory beside the compressed payload and the cache, as the issue bounds it.

@@ -4,14 +4,19 @@
 
 #include "vtkCellData.h"
 #include "vtkColorTransferFunction.h"
+#include "vtkCommunicator.h"
 #include "vtkCompressedVolume.h"
 #include "vtkContourValues.h"
 #include "vtkDataArray.h"
+#include "vtkExtractVOI.h"
+#include "vtkGhostCellsGenerator.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLODProp3D.h"
+#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
+#include "vtkOutlineSource.h"
 #include "vtkPVLODVolume.h"
 #include "vtkPVRenderView.h"
 #include "vtkPVView.h"
@@ -19,6 +24,7 @@
 #include "vtkPolyDataMapper.h"
 #include "vtkProgressiveIsosurfaceMapper.h"
 #include "vtkProgressiveIsosurfaceStatistics.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkVolumeProperty.h"
 
 namespace
@@ -60,6 +66,50 @@ private:
 };
 vtkStandardNewMacro(vtkPVOpaqueLODVolume);
 
+// ---- what the processes that share an image agree on
+int NumberOfProcesses()
+{
+  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
+  return controller ? controller->GetNumberOfProcesses() : 1;
+}
+
+bool AnyProcess(bool here)
+{
+  const int mine = here ? 1 : 0;
+  int any = mine;
+  vtkMultiProcessController::GetGlobalController()->AllReduce(
+    &mine, &any, 1, vtkCommunicator::MAX_OP);
+  return any != 0;
+}
+
+bool IsEmpty(const int extent[6])
+{
+  return extent[0] > extent[1] || extent[2] > extent[3] || extent[4] > extent[5];
+}
+
+bool Contains(const int outer[6], const int inner[6])
+{
+  return outer[0] <= inner[0] && inner[1] <= outer[1] && outer[2] <= inner[2] &&
+    inner[3] <= outer[3] && outer[4] <= inner[4] && inner[5] <= outer[5];
+}
+
+// The extent around all processes' own.
+void FindWholeExtent(const int own[6], int whole[6])
+{
+  int mine[6];
+  for (int i = 0; i < 6; ++i)
+  {
+    const int sign = i % 2 == 0 ? -1 : 1; // one reduction to the largest
+    mine[i] = IsEmpty(own) ? -VTK_INT_MAX : sign * own[i];
+  }
+  vtkMultiProcessController::GetGlobalController()->AllReduce(
+    mine, whole, 6, vtkCommunicator::MAX_OP);
+  for (int i = 0; i < 6; i += 2)
+  {
+    whole[i] = -whole[i];
+  }
+}
+
 constexpr int SPECULATION_ON = 64;
 constexpr int SPECULATION_OFF = 1;
 }
@@ -99,22 +149,136 @@ int vtkProgressiveIsosurfaceRepresentation::ProcessViewRequest(
 }
 
 //------------------------------------------------------------------------------
+int vtkProgressiveIsosurfaceRepresentation::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  const int good = this->Superclass::RequestUpdateExtent(request, inputVector, outputVector);
+  if (inputVector[0]->GetNumberOfInformationObjects() == 1 && NumberOfProcesses() > 1)
+  {
+    inputVector[0]->GetInformationObject(0)->Set(
+      vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(),
+      vtkCompressedVolume::NumberOfGhostLevels);
+  }
+  return good;
+}
+
+//------------------------------------------------------------------------------
 int vtkProgressiveIsosurfaceRepresentation::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   this->Cache = nullptr;
-  const int processed = this->Superclass::RequestData(request, inputVector, outputVector);
   const bool hasInput = inputVector[0]->GetNumberOfInformationObjects() == 1;
+  vtkImageData* image = hasInput ? vtkImageData::GetData(inputVector[0], 0) : nullptr;
   // A process without input has no data of its own and shows the outline.
-  this->CanDraw = !hasInput || this->FindDrawnArray();
-  return processed;
+  this->CanDraw = !hasInput || this->FindDrawnArray(image);
+  if (!image)
+  {
+    return this->Superclass::RequestData(request, inputVector, outputVector);
+  }
+  vtkSmartPointer<vtkImageData> piece = this->MakePiece(image);
+  int own[6];
+  vtkCompressedVolume::GetOwnExtent(piece, own);
+  this->SetPiece(piece, own);
+  vtkStreamingDemandDrivenPipeline::GetWholeExtent(
+    inputVector[0]->GetInformationObject(0), this->WholeExtent);
+  // not vtkImageVolumeRepresentation's: it would cut off the ghost cells
+  return this->vtkVolumeRepresentation::RequestData(request, inputVector, outputVector);
 }
 
 //------------------------------------------------------------------------------
-bool vtkProgressiveIsosurfaceRepresentation::FindDrawnArray()
+void vtkProgressiveIsosurfaceRepresentation::SetPiece(vtkImageData* piece, const int own[6])
+{
+  vtkNew<vtkImageData> outline;
+  outline->CopyStructure(piece);
+  outline->SetExtent(const_cast<int*>(own));
+  outline->GetBounds(this->DataBounds);
+  this->OutlineSource->SetBounds(this->DataBounds);
+  this->OutlineSource->Update();
+  this->DataSize = piece->GetActualMemorySize();
+  this->Cache = piece;
+  this->Actor->SetEnableLOD(0);
+  this->CanDraw = this->CanDraw && outline->GetNumberOfPoints() > 0;
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::MakePiece(vtkImageData* image)
+{
+  if (NumberOfProcesses() == 1)
+  {
+    auto whole = vtkSmartPointer<vtkImageData>::Take(image->NewInstance());
+    whole->ShallowCopy(image);
+    return whole;
+  }
+  int own[6];
+  vtkCompressedVolume::GetOwnExtent(image, own);
+  // all processes have to take the same way: they exchange samples on it
+  const bool compressed = AnyProcess(vtkCompressedVolume::IsCompressed(image));
+  return compressed ? this->MakeCompressedPiece(image, own) : this->MakePlainPiece(image, own);
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::MakeCompressedPiece(
+  vtkImageData* image, const int own[6])
+{
+  auto piece = vtkSmartPointer<vtkImageData>::New();
+  piece->CopyStructure(image);
+  piece->SetExtent(const_cast<int*>(own));
+  piece->GetFieldData()->PassData(image->GetFieldData());
+  vtkNew<vtkCompressedVolume> volume;
+  if (this->CanDraw && piece->GetNumberOfPoints() > 0 && volume->Read(piece))
+  {
+    volume->Crop(own);
+    volume->Write(piece);
+  }
+  return piece;
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::MakePlainPiece(
+  vtkImageData* image, const int own[6])
+{
+  vtkSmartPointer<vtkImageData> piece = this->SelectDrawnArray(image);
+  int whole[6], covering[6];
+  FindWholeExtent(own, whole);
+  vtkCompressedVolume::GetCoveringExtent(own, whole, this->DrawnArray.Association, covering);
+  const bool lacks = !IsEmpty(own) && !Contains(image->GetExtent(), covering);
+  if (AnyProcess(lacks))
+  {
+    vtkNew<vtkGhostCellsGenerator> generator;
+    generator->SetInputData(piece);
+    generator->BuildIfRequiredOff();
+    generator->SetNumberOfGhostLayers(vtkCompressedVolume::NumberOfGhostLevels);
+    generator->Update();
+    piece = vtkImageData::SafeDownCast(generator->GetOutput());
+  }
+  if (IsEmpty(own))
+  {
+    return piece;
+  }
+  vtkNew<vtkExtractVOI> cut;
+  cut->SetInputData(piece);
+  cut->SetVOI(covering);
+  cut->Update();
+  return cut->GetOutput();
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::SelectDrawnArray(
+  vtkImageData* image)
+{
+  auto selected = vtkSmartPointer<vtkImageData>::New();
+  selected->CopyStructure(image);
+  selected->GetCellData()->AddArray(image->GetCellGhostArray());
+  vtkDataSetAttributes* from = image->GetAttributes(this->DrawnArray.Association);
+  vtkDataSetAttributes* to = selected->GetAttributes(this->DrawnArray.Association);
+  to->AddArray(from->GetArray(this->DrawnArray.Name.c_str()));
+  return selected;
+}
+
+//------------------------------------------------------------------------------
+bool vtkProgressiveIsosurfaceRepresentation::FindDrawnArray(vtkImageData* image)
 {
   this->DrawnArray = ArraySelection();
-  vtkImageData* image = vtkImageData::SafeDownCast(this->Cache);
   if (!image)
   {
     vtkErrorMacro(

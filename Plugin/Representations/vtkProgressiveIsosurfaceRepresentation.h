@@ -11,6 +11,11 @@
  * colour otherwise.
  *
  * Image data only: rectilinear grids and composite data are refused with an error.
+ *
+ * Where several processes share an image, each draws its own piece, and ParaView composites by
+ * depth. A process takes with its piece the samples around it that normals need, in whole blocks of
+ * the whole image, so that every process decodes the same values and no seam shows: it asks the
+ * pipeline for ghost levels, and where that has none, exchanges them with the others.
  */
 
 #ifndef vtkProgressiveIsosurfaceRepresentation_h
@@ -79,6 +84,8 @@ protected:
   vtkProgressiveIsosurfaceRepresentation();
   ~vtkProgressiveIsosurfaceRepresentation() override;
 
+  int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
 
@@ -97,10 +104,22 @@ private:
 
   ///@{
   /// Sets DrawnArray from the input; false after an error that says why nothing can be drawn.
-  bool FindDrawnArray();
+  bool FindDrawnArray(vtkImageData* image);
   bool FindCompressedArray(vtkImageData* image);
   bool FindPlainArray(vtkImageData* image);
   ///@}
+
+  ///@{
+  /// What this process draws of its input: with several processes, its piece and what it needs of
+  /// the samples around it.
+  vtkSmartPointer<vtkImageData> MakePiece(vtkImageData* image);
+  vtkSmartPointer<vtkImageData> MakeCompressedPiece(vtkImageData* image, const int own[6]);
+  vtkSmartPointer<vtkImageData> MakePlainPiece(vtkImageData* image, const int own[6]);
+  vtkSmartPointer<vtkImageData> SelectDrawnArray(vtkImageData* image);
+  ///@}
+
+  /// Take over what is drawn, and its outline and size.
+  void SetPiece(vtkImageData* piece, const int own[6]);
 
   /// True when the representation is coloured by the array that is drawn.
   bool IsColoredByDrawnArray();

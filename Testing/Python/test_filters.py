@@ -21,6 +21,8 @@ from support import (
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkIntArray
 from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkFiltersCore import vtkPointDataToCellData
+from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 
 RATES = [9 / 64, 0.5, 1, 1.5, 2, 3, 4, 5.25, 8, 12, 16, 31, 32]
 TYPES = ["i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", "f4", "f8"]
@@ -228,6 +230,10 @@ def replace(name, values, kind=vtkIntArray):
     return change
 
 
+def cover(image, extent):
+    replace("Extent", extent)(image)
+
+
 def truncate(image):
     stream = image.GetFieldData().GetAbstractArray("ProgIso.ZFP.Stream")
     stream.SetNumberOfValues(stream.GetNumberOfValues() - 1)
@@ -245,6 +251,9 @@ DAMAGES = {
     "other geometry": lambda image: image.SetDimensions(9, 8, 8),
     "range": replace("Range", [0, float("nan")], vtkDoubleArray),
     "association": replace("Association", [7]),
+    "an extent elsewhere": lambda image: image.SetExtent(1, 6, 0, 7, 3, 8),
+    "an extent of another size": lambda image: (image.SetExtent(0, 6, 0, 7, 0, 7), cover(image, (0, 7, 0, 7, 0, 6))),
+    "an extent beyond 32 bits": lambda image: (image.SetExtent(0, 6, 0, 7, 0, 7), cover(image, (-(2**31), 7) * 3)),
 }
 
 
@@ -346,6 +355,59 @@ def test_reader_puts_parts_together(tmp_path, header, rate):
     assert writer.Write() == 1
     dimensions = None if header else (65, 62, 61)
     assert stream_of(progiso.read(tmp_path / "volume.zfp", dimensions, rate)) == stream_of(compressed)
+
+
+@pytest.mark.parametrize("cells", [False, True])
+@pytest.mark.parametrize("pieces", [2, 3, 8])
+def test_pieces_hold_the_blocks_of_the_whole(pieces, cells):
+    """A piece's stream decodes to the samples that the whole's does, its own and those around it."""
+    source = vtkRTAnalyticSource()
+    source.SetWholeExtent(-13, 14, -9, 16, 2, 31)
+    cell_values = vtkPointDataToCellData()
+    cell_values.SetInputConnection(source.GetOutputPort())
+    algorithm = vtkImageZFPCompress()
+    algorithm.SetInputConnection((cell_values if cells else source).GetOutputPort())
+    algorithm.SetRate(5)
+    algorithm.Update()
+    expected = values_of(progiso.decompress(algorithm.GetOutput()))
+    origin, covered = np.array([-13, -9, 2]), np.zeros(expected.shape, int)
+    for piece in range(pieces):
+        algorithm.UpdatePiece(piece, pieces, 0)
+        output, volume = algorithm.GetOutput(), vtkCompressedVolume()
+        assert volume.Read(output), volume.GetErrorMessage()
+        own = np.reshape(output.GetExtent(), (3, 2)) - origin[:, None]
+        held = np.reshape(volume.GetExtent(), (3, 2)) - origin[:, None]
+        assert (held[:, 0] % 4 == 0).all() and (held != [[0, 27], [0, 25], [0, 29]]).any()
+        assert (held[:, 0] <= np.maximum(own[:, 0] - 1, 0)).all()
+        assert (held[:, 1] >= np.minimum(own[:, 1] + 1, [27, 25, 29])).all()
+        found = progiso.decompress(output)
+        assert found.GetExtent() == volume.GetExtent()
+        box = tuple(slice(low, high + (0 if cells else 1)) for low, high in held[::-1])
+        assert same_bits(values_of(found), np.ascontiguousarray(expected[box]))
+        covered[tuple(slice(low, high) for low, high in own[::-1])] += 1
+    cell_box = tuple(slice(0, n) for n in (29, 25, 27))
+    assert (covered[cell_box] == 1).all(), "every cell belongs to one piece"
+
+
+@pytest.mark.parametrize("bits", [9, 64, 333, 2048])
+def test_cropping_keeps_blocks_as_they_are(bits):
+    """Rows of blocks that begin at any bit of a word."""
+    compressed = progiso.compress(make_image(noise((21, 18, 30), 5), extent_start=(3, -4, 5)), bits / 64)
+    part, volume = vtkImageData(), vtkCompressedVolume()
+    part.DeepCopy(compressed)
+    part.SetExtent(17, 25, 5, 9, 12, 15)
+    assert volume.Read(part) and not volume.Covers(part)
+    volume.Crop(part.GetExtent())
+    assert volume.GetExtent() == (15, 26, 4, 11, 9, 16)
+    volume.Write(part)
+    expected = values_of(progiso.decompress(compressed))[4:12, 8:16, 12:24]
+    assert same_bits(values_of(progiso.decompress(part)), np.ascontiguousarray(expected))
+    with vtk_messages() as messages:
+        writer = vtkZFPWriter()
+        writer.SetInputData(part)
+        writer.SetFileName("/dev/null")
+        assert writer.Write() == 0
+    assert len(messages) == 1 and "piece" in messages[0]
 
 
 def test_vti_with_appended_data(tmp_path):

@@ -44,8 +44,8 @@ def plugin(build):
     return found[0]
 
 
-def under_x(*command, python_path=(), timeout=600, cwd=None):
-    """Run a command in a virtual display of its own; return its output."""
+def under_x(*command, python_path=(), timeout=600, cwd=None, **variables):
+    """Run a command in a virtual display of its own, with more environment variables; return its output."""
     assert shutil.which("xvfb-run"), "the tests of the plugin need xvfb-run (Debian: xvfb, xauth)"
     environment = {
         k: v
@@ -54,6 +54,7 @@ def under_x(*command, python_path=(), timeout=600, cwd=None):
     }
     environment["PYTHONPATH"] = os.pathsep.join(map(str, python_path))
     environment["PROGISO_GL_DEBUG"] = "1"
+    environment.update(variables)
     # -noreset: the server must not restart, and refuse a connection meanwhile, when its only client closes one to open the next
     display = ["xvfb-run", "-n", str(next(displays)), "-s", "-screen 0 1280x1024x24 -noreset"]
     done = subprocess.run(

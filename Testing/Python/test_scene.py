@@ -7,10 +7,11 @@ import progiso
 import pytest
 import tolerances
 from oracle.caster import Camera, cast
-from scenes import Scene, orbit
+from scenes import CACHED, Scene, orbit
 from support import blobs, make_image, noise, reference_volume, vtk_messages
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkFloatArray
+from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkFiltersSources import vtkPlaneSource
 from vtkmodules.vtkRenderingCore import vtkActor, vtkColorTransferFunction, vtkPolyDataMapper
 
@@ -33,6 +34,37 @@ def flat(scene, rgb):
     """Give the isosurface one colour that no light changes."""
     colour(scene.volume, rgb)
     scene.volume.GetProperty().ShadeOff()
+
+
+def piece_of(compressed, axis, first, last):
+    """A part of a compressed volume with the whole stream; samples count from the volume's own first one."""
+    part = vtkImageData()
+    part.ShallowCopy(compressed)
+    extent = list(compressed.GetExtent())
+    extent[2 * axis : 2 * axis + 2] = extent[2 * axis] + first, extent[2 * axis] + last
+    part.SetExtent(extent)
+    return part
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("cells", [False, True])
+@pytest.mark.parametrize("settings", [{}, CACHED])
+def test_pieces_meet_without_a_seam(axis, cells, settings):
+    """Two mappers with a part of a volume each make the picture of the whole; neither alone does."""
+    values = make_image(blobs((40, 36, 44), 12), cells=cells, extent_start=(5, -3, 2))
+    compressed = progiso.compress(values, 4)
+    camera = orbit(reference_volume(compressed), 1, 8)
+    end = values.GetDimensions()[axis] - 1
+    ranges = (0, end), (0, 17), (17, end)
+    whole, parts, other = (
+        Scene(piece_of(compressed, axis, *part), ISOVALUE, camera, SIZE, lit=True, **settings) for part in ranges
+    )
+    hits = [np.isfinite(scene.depth()) for scene in (whole, parts, other)]
+    assert (hits[0] == (hits[1] | hits[2])).all() and not (hits[0] == hits[1]).all() and not (hits[0] == hits[2]).all()
+    parts.renderer.AddVolume(other.volume)
+    parts.render()
+    difference = np.abs(parts.picture().astype(int) - whole.picture()).max(axis=2)
+    assert (difference > tolerances.PROCESSES_LEVELS).mean() <= tolerances.PROCESSES_PIXELS
 
 
 def wall(camera, distance, rgb, opacity=1.0):

@@ -1,0 +1,83 @@
+"""Run by pvbatch on several processes: the same pictures whatever their number. Every process has a piece of the image, and draws that."""
+
+import numpy
+from common import BUILD, OUTPUT, finish, load_plugin, make_view, screenshot, show_isosurface
+from paraview import servermanager, simple
+
+assert BUILD.is_dir()
+load_plugin()
+view = make_view([320, 240])
+camera = view.GetActiveCamera()
+camera.SetFocalPoint(1, 0, 4)
+camera.SetPosition(68, 47, 73)
+camera.SetViewUp(0, 1, 0)
+camera.SetClippingRange(1, 200)
+
+EXTENT = [-23, 25, -24, 24, -20, 29]  # no multiple of four anywhere, also not where it is cut
+look = {"Isovalue": 150.0, "DiffuseColor": [0.9, 0.85, 0.7]}
+
+
+def shoot(source, name, **properties):
+    display = show_isosurface(source, view, **{**look, **properties})
+    screenshot(view, f"{name}.png")
+    simple.Hide(source, view)
+    return display
+
+
+wavelet = simple.Wavelet(WholeExtent=EXTENT)
+display = shoot(wavelet, "plain", CompressionRate=4)
+processes = servermanager.ActiveConnection.GetNumberOfDataPartitions()
+
+compressed = simple.ZFPCompress(Input=wavelet, Rate=4)
+shoot(compressed, "compressed")
+decompressed = simple.ZFPDecompress(Input=compressed)
+shoot(decompressed, "decompressed", CompressionRate=16)
+
+cells = simple.PointDatatoCellData(Input=wavelet)
+shoot(cells, "cells", CompressionRate=6)
+shoot(simple.ZFPCompress(Input=cells, Rate=6), "cells-compressed")
+
+for name in ("file-compressed", "file-plain"):
+    shoot(simple.OpenDataFile(str(OUTPUT.parent / f"{name}.vti")), name)
+
+# a file that one process reads
+zfp = simple.OpenDataFile(str(OUTPUT.parent / "file.zfp"))
+zfp.DataOrigin = [-22, -20, -18]
+shoot(zfp, "file-zfp")
+
+# a source that makes pieces, but no ghost cells: they are exchanged
+pieces = simple.ProgrammableSource(OutputDataSetType="vtkImageData")
+pieces.ScriptRequestInformation = f"""
+information = self.GetOutputInformation(0)
+information.Set(self.GetExecutive().WHOLE_EXTENT(), {EXTENT}, 6)
+information.Set(self.CAN_HANDLE_PIECE_REQUEST(), 1)
+"""
+pieces.Script = f"""
+from vtkmodules.vtkCommonExecutionModel import vtkExtentTranslator, vtkStreamingDemandDrivenPipeline as pipeline
+from vtkmodules.util.numpy_support import numpy_to_vtk
+import numpy
+information = self.GetOutputInformation(0)
+translator = vtkExtentTranslator()
+translator.SetWholeExtent({EXTENT})
+translator.SetPiece(information.Get(pipeline.UPDATE_PIECE_NUMBER()))
+translator.SetNumberOfPieces(information.Get(pipeline.UPDATE_NUMBER_OF_PIECES()))
+translator.SetGhostLevel(0)
+translator.PieceToExtent()
+extent = translator.GetExtent()
+image = self.GetImageDataOutput()
+image.SetExtent(extent)
+z, y, x = numpy.meshgrid(*[numpy.arange(extent[a], extent[a + 1] + 1.0) for a in (4, 2, 0)], indexing="ij")
+values = 150 + 60 * (numpy.sin(0.3 * x) * numpy.cos(0.4 * y) + numpy.sin(0.2 * z + 0.1 * x))
+array = numpy_to_vtk(values.ravel(), deep=1)
+array.SetName("values")
+image.GetPointData().SetScalars(array)
+"""
+shoot(pieces, "pieces", CompressionRate=8)
+
+# among other geometry, which hides it and is hidden by it
+sphere = simple.Sphere(Radius=9, Center=[16, 8, 18], ThetaResolution=40, PhiResolution=40)
+shown = simple.Show(sphere, view)
+shown.DiffuseColor = [0.3, 0.5, 0.9]
+shoot(compressed, "among-meshes")
+
+finish(processes=int(numpy.asarray(processes)))
