@@ -259,11 +259,17 @@ void PipelineResources::DispatchIndirect(Stage stage, std::size_t controlOffset)
   this->Run(stage, [=]() { glDispatchComputeIndirect(static_cast<GLintptr>(controlOffset)); });
 }
 
-void PipelineResources::DrawComposite()
+void PipelineResources::Draw(Stage stage, const std::array<float, 4>* selected)
 {
-  this->Run(Stage::Composite,
-    [this]()
+  this->Run(stage,
+    [=]()
     {
+      if (selected)
+      {
+        GLint program = 0;
+        glGetIntegerv(GL_CURRENT_PROGRAM, &program);
+        glUniform4fv(glGetUniformLocation(program, "selected"), 1, selected->data());
+      }
       glBindVertexArray(this->VertexArray);
       glDrawArrays(GL_TRIANGLES, 0, 3);
       glBindVertexArray(0);
@@ -551,6 +557,91 @@ void PipelineResources::UploadScene(const SceneBlock& scene)
   glBindBuffer(GL_UNIFORM_BUFFER, this->SceneBuffer);
   glBufferSubData(GL_UNIFORM_BUFFER, 0, sizeof(SceneBlock), &scene);
   glBindBuffer(GL_UNIFORM_BUFFER, 0);
+}
+
+namespace
+{
+// Internal format of the depths that the framebuffer to be read from has.
+GLenum DepthFormat(bool& stencil)
+{
+  GLint bits = 0, type = 0, stencilBits = 0, bound = 0;
+  glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &bound);
+  const GLenum depth = bound ? GL_DEPTH_ATTACHMENT : GL_DEPTH; // the window's own names it so
+  const auto ask = [depth](GLenum what, GLint& answer)
+  { glGetFramebufferAttachmentParameteriv(GL_READ_FRAMEBUFFER, depth, what, &answer); };
+  ask(GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE, bits);
+  ask(GL_FRAMEBUFFER_ATTACHMENT_STENCIL_SIZE, stencilBits);
+  ask(GL_FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE, type);
+  stencil = stencilBits > 0;
+  if (type == GL_FLOAT)
+  {
+    return stencil ? GL_DEPTH32F_STENCIL8 : GL_DEPTH_COMPONENT32F;
+  }
+  return stencil ? GL_DEPTH24_STENCIL8
+    : bits == 16 ? GL_DEPTH_COMPONENT16
+    : bits == 24 ? GL_DEPTH_COMPONENT24
+                 : GL_DEPTH_COMPONENT32;
+}
+
+// A framebuffer of one sample a pixel, with the depths of the one that is read from; it is bound to
+// be read from instead, until it is destroyed.
+class ResolvedDepths
+{
+public:
+  explicit ResolvedDepths(const std::int32_t image[4])
+  {
+    bool stencil = false;
+    const GLenum format = DepthFormat(stencil);
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &this->Drawn);
+    glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &this->Read);
+    glGenRenderbuffers(1, &this->Depths);
+    glBindRenderbuffer(GL_RENDERBUFFER, this->Depths);
+    glRenderbufferStorage(GL_RENDERBUFFER, format, image[2] + image[0], image[3] + image[1]);
+    glBindRenderbuffer(GL_RENDERBUFFER, 0);
+    glGenFramebuffers(1, &this->Framebuffer);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, this->Framebuffer);
+    glFramebufferRenderbuffer(GL_DRAW_FRAMEBUFFER,
+      stencil ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, this->Depths);
+    glBlitFramebuffer(image[2], image[3], image[2] + image[0], image[3] + image[1], image[2],
+      image[3], image[2] + image[0], image[3] + image[1], GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, this->Framebuffer);
+  }
+  ~ResolvedDepths()
+  {
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(this->Drawn));
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(this->Read));
+    glDeleteFramebuffers(1, &this->Framebuffer);
+    glDeleteRenderbuffers(1, &this->Depths);
+  }
+  ResolvedDepths(const ResolvedDepths&) = delete;
+  void operator=(const ResolvedDepths&) = delete;
+
+private:
+  GLint Drawn = 0, Read = 0;
+  GLuint Framebuffer = 0, Depths = 0;
+};
+}
+
+// What is drawn into now is read, whatever was to be read from before.
+void PipelineResources::CaptureDepths(
+  const std::int32_t image[4], Buffer buffer, std::int64_t offset)
+{
+  GLint drawn = 0, read = 0, samples = 0;
+  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &drawn);
+  glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &read);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(drawn));
+  glGetIntegerv(GL_SAMPLES, &samples);
+  {
+    const std::unique_ptr<ResolvedDepths> resolved(
+      samples > 0 ? new ResolvedDepths(image) : nullptr);
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, this->Names[Index(buffer)]);
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    glReadPixels(image[2], image[3], image[0], image[1], GL_DEPTH_COMPONENT, GL_FLOAT,
+      reinterpret_cast<void*>(static_cast<std::intptr_t>(offset)));
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+  }
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(read));
+  glMemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 
 void PipelineResources::OrderSnapshot()

@@ -23,6 +23,7 @@ enum class Stage
   RequestBlocks,
   DecodeBlocks,
   Composite,
+  Select,
   NumberOfStages
 };
 constexpr int NumberOfStages = static_cast<int>(Stage::NumberOfStages);

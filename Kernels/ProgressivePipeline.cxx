@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 
 namespace
@@ -338,10 +339,15 @@ bool ProgressivePipeline::SetScene(const SceneBlock& scene, bool newImage)
   this->FillInScene(scene);
   const PipelineExtent before = this->Extent;
   this->Extent.Pixels = static_cast<std::int64_t>(scene.Image[0]) * scene.Image[1];
-  this->Extent.Lit = scene.Lighting[0] > 0;
   this->Extent.Detailed = this->Settings.Detailed;
-  const bool sameImage = before.Pixels == this->Extent.Pixels && before.Lit == this->Extent.Lit &&
-    before.Detailed == this->Extent.Detailed;
+  this->Extent.Lit = scene.Lighting[0] > 0;
+  this->Extent.Translucent = scene.Lighting[1] > 0;
+  this->Extent.Obstructed = scene.Lighting[2] > 0;
+  this->Extent.SeveralIsovalues = scene.Surface[0] > 1;
+  this->Extent.Clipped = scene.Surface[1] > 0;
+  this->Extent.Cropped = scene.Surface[2] != SceneBlock::AllRegions;
+  const bool sameImage =
+    before.Pixels == this->Extent.Pixels && before.GetFeatures() == this->Extent.GetFeatures();
   this->Started = this->Started && sameImage;
   return this->MakeRoom(newImage);
 }
@@ -427,6 +433,12 @@ void ProgressivePipeline::Start()
   }
   this->Gpu.Fill(Buffer::Hits, 0xFFFFFFFFu);
   this->Gpu.Fill(Buffer::Normals, 0x80008000u);
+  this->Gpu.Fill(Buffer::Layers, 0);
+  if (this->Extent.Obstructed)
+  {
+    const std::int64_t section = this->Extent.SeveralIsovalues ? 3 : 2;
+    this->Gpu.CaptureDepths(this->Scene.Image, Buffer::Hits, 4 * section * this->Extent.Pixels);
+  }
   const std::uint32_t yes = 1;
   this->Gpu.Write(Buffer::Control, offsetof(ControlBlock, NewImage), &yes, sizeof(yes));
   this->Gpu.Dispatch(Stage::PlanPass, 1);
@@ -442,11 +454,11 @@ void ProgressivePipeline::RunPass()
     this->Gpu.DispatchIndirect(Stage::CacheEvict, offsetof(ControlBlock, EvictGroups));
   }
   this->Gpu.DispatchIndirect(Stage::CastRays, offsetof(ControlBlock, CastGroups));
-  if (this->Extent.Cached)
+  if (!this->Extent.IsSinglePass())
   {
     this->Gpu.DispatchIndirect(Stage::CastFewRays, offsetof(ControlBlock, FewGroups));
   }
-  if (this->Extent.Lit)
+  if (this->Extent.Lit || this->Extent.Translucent)
   {
     this->Gpu.DispatchIndirect(Stage::FindNormals, offsetof(ControlBlock, NormalGroups));
   }
@@ -466,7 +478,7 @@ void ProgressivePipeline::RunPass()
 void ProgressivePipeline::RunPasses(int maximum, bool eager, const std::function<bool()>& stop)
 {
   const std::int64_t ahead =
-    eager || this->Gpu.IsSoftware() || !this->Extent.Cached ? 1 : PassesAhead;
+    eager || this->Gpu.IsSoftware() || this->Extent.IsSinglePass() ? 1 : PassesAhead;
   const std::int64_t last =
     maximum > 0 ? this->PassesSubmitted + maximum : std::numeric_limits<std::int64_t>::max();
   bool more = this->Remaining > 0;
@@ -477,7 +489,7 @@ void ProgressivePipeline::RunPasses(int maximum, bool eager, const std::function
     {
       this->RunPass();
     }
-    if (!this->Extent.Cached)
+    if (this->Extent.IsSinglePass())
     {
       this->Remaining = 0; // there is nothing to wait for
       return;
@@ -593,11 +605,40 @@ double ProgressivePipeline::GetCompletedFraction() const
     : 0.0;
 }
 
+// One section of Hits.glsl.
+std::vector<std::uint32_t> ProgressivePipeline::ReadHits(std::int64_t section)
+{
+  std::vector<std::uint32_t> words(static_cast<std::size_t>(this->Extent.Pixels));
+  this->Gpu.Read(
+    Buffer::Hits, 4 * section * this->Extent.Pixels, words.data(), 4 * this->Extent.Pixels);
+  return words;
+}
+
 std::vector<std::uint32_t> ProgressivePipeline::ReadHitKeys()
 {
-  std::vector<std::uint32_t> keys(static_cast<std::size_t>(this->Extent.Pixels));
-  this->Gpu.Read(Buffer::Hits, 0, keys.data(), 4 * this->Extent.Pixels);
-  return keys;
+  return this->ReadHits(0);
+}
+
+std::vector<float> ProgressivePipeline::ReadHitDepths()
+{
+  const std::vector<std::uint32_t> words = this->ReadHits(1);
+  std::vector<float> depths(words.size());
+  std::memcpy(depths.data(), words.data(), 4 * words.size());
+  return depths;
+}
+
+PixelHit ProgressivePipeline::ReadHit(std::int64_t pixel)
+{
+  PixelHit hit;
+  const auto read = [this, pixel](std::int64_t section, void* word)
+  { this->Gpu.Read(Buffer::Hits, 4 * (section * this->Extent.Pixels + pixel), word, 4); };
+  read(0, &hit.Key);
+  read(1, &hit.Depth);
+  if (this->Extent.SeveralIsovalues)
+  {
+    read(2, &hit.Surface);
+  }
+  return hit;
 }
 
 bool ProgressivePipeline::DecodeVolume(std::vector<float>& values)
