@@ -62,7 +62,7 @@ void ClipRay(inout Ray ray)
 }
 #endif
 
-#ifdef OBSTRUCTED
+#if defined(OBSTRUCTED) && defined(BINDING_HITS)
 // Parameter at which a ray meets opaque geometry of this depth in the window.
 double ObstacleT(float depth)
 {
@@ -91,7 +91,7 @@ Ray CameraRay(uint pixel)
 #ifdef CLIPPED
   ClipRay(ray);
 #endif
-#ifdef OBSTRUCTED
+#if defined(OBSTRUCTED) && defined(BINDING_HITS)
   ray.Leave = min(ray.Leave, ObstacleT(ObstacleOf(pixel)));
 #endif
   return ray;

@@ -44,7 +44,8 @@ layout(std140, binding = 0) uniform Scene
   vec4 DepthTerms; // clip-space z and w as functions of t: z = x + y t, w = z + w t
   vec4 Colors[MAX_ISOVALUES]; // of the isosurfaces; w: opacity
   vec4 Material;   // ambient, diffuse, specular, specular power
-  ivec4 Lighting;  // number of lights (0: unlit); 1: an isosurface is translucent; 1: opaque geometry hides it
+  ivec4 Lighting;  // number of lights (0: unlit); 1: an isosurface is translucent; 1: opaque geometry hides it;
+                   // 1: both sides are lit
   Light Lights[MAX_LIGHTS];
 }
 scene;

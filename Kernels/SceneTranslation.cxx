@@ -288,6 +288,7 @@ void TranslateLook(
     return;
   }
   TranslateLights(renderer, worldToEye, scene);
+  scene.Lighting[3] = renderer->GetTwoSidedLighting() ? 1 : 0;
   for (int i = 0; i < scene.Surface[0] && scene.Lighting[0] == 0; ++i)
   {
     for (int channel = 0; channel < 3; ++channel) // in the dark no normal is needed

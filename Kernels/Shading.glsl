@@ -1,4 +1,5 @@
-// Light on a surface, by Phong's model as VTK has it, in view coordinates. Both sides of a surface are lit.
+// Light on a surface, by Phong's model as VTK's volume mapper has it, in view coordinates. Two-sided, a light reaches the
+// surface from either side, one-sided only from where the values are lower.
 
 #ifdef LIT
 // What of a light arrives, and from where.
@@ -28,10 +29,11 @@ vec3 Illuminate(vec3 position, vec3 normal, vec3 toViewer, vec3 surfaceColor)
   {
     vec3 toLight;
     vec3 light = scene.Lights[i].Color.rgb * Attenuation(scene.Lights[i], position, toLight);
-    float cosine = dot(normal, toLight);
+    vec3 facing = scene.Lighting.w != 0 && dot(normal, toLight) > 0.0 ? normal : -normal;
+    float cosine = dot(facing, toLight);
     if (cosine > 0.0)
     {
-      float highlight = max(dot(reflect(-toLight, normal), toViewer), 0.0);
+      float highlight = max(dot(reflect(-toLight, facing), toViewer), 0.0);
       color += light * scene.Material.y * cosine * surfaceColor;
       color += light * scene.Material.z * pow(highlight, scene.Material.w);
     }
@@ -46,9 +48,7 @@ vec3 Shade(uint pixel, float t, vec3 normal, int surface)
   vec3 color = scene.Colors[surface].rgb;
 #ifdef LIT
   vec3 direction = EyeRayDirection(pixel);
-  vec3 toViewer = -normalize(direction);
-  vec3 facing = dot(normal, toViewer) < 0.0 ? -normal : normal;
-  color = Illuminate(EyeRayOrigin(pixel) + t * direction, facing, toViewer, color);
+  color = Illuminate(EyeRayOrigin(pixel) + t * direction, normal, -normalize(direction), color);
 #endif
   return color;
 }
