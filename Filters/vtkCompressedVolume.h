@@ -98,9 +98,10 @@ public:
   void Write(vtkImageData* image) const;
 
   /**
-   * Remove the arrays that Write() stores from an image's field data.
+   * Remove the arrays that Write() stores from the field data of an image, or of what was made of
+   * one.
    */
-  static void Remove(vtkImageData* image);
+  static void Remove(vtkDataObject* object);
 
   /**
    * What the last Read() objected to; empty after a successful one.
