@@ -5,7 +5,7 @@
 >>> result = progiso.render(progiso.read(fetch("sphere", size=32)), isovalue=0.8)
 
 Volumes are compressed by `compress`, those larger than memory by `compress_slabs`, read and written
-by `read` and `save`, shown by `render`, by `make_isosurface` in a VTK renderer of your own, or by
+by `read` and `save`, contoured by `contour`, shown by `render`, by `make_isosurface` in a VTK renderer of your own, or by
 ``plotter.progiso.add_isosurface`` in pyvista.
 """
 
@@ -57,11 +57,13 @@ from .isosurface import make_isosurface  # noqa: E402
 from .render import RenderResult, render, write_png  # noqa: E402
 from .slabs import compress_slabs  # noqa: E402
 from .statistics import depth, statistics  # noqa: E402
+from .surface import contour, save_surface  # noqa: E402
 from .vtkProgIsoFilters import (  # noqa: E402
     vtkCompressedVolume,
     vtkCompressedVolumeBuilder,
     vtkImageZFPCompress,
     vtkImageZFPDecompress,
+    vtkZFPContour,
     vtkZFPReader,
     vtkZFPWriter,
 )
@@ -77,6 +79,7 @@ __all__ = [
     "add_isosurface",
     "compress",
     "compress_slabs",
+    "contour",
     "decompress",
     "depth",
     "describe",
@@ -87,6 +90,7 @@ __all__ = [
     "read",
     "render",
     "save",
+    "save_surface",
     "statistics",
     "view_camera",
     "vtkCompressedVolume",
@@ -96,6 +100,7 @@ __all__ = [
     "vtkIsosurfaceVolume",
     "vtkProgressiveIsosurfaceMapper",
     "vtkProgressiveIsosurfaceStatistics",
+    "vtkZFPContour",
     "vtkZFPReader",
     "vtkZFPWriter",
     "write_png",
