@@ -19,6 +19,7 @@ from .io import COMPRESSED_SUFFIXES, PLAIN_SUFFIXES
 from .progress import progress_bar
 from .surface import SURFACE_SUFFIXES
 
+_COMPRESSIBLE = ".vti .mha .mhd .nrrd .nii .nii.gz .vtk, name_WxHxD_type.raw"
 _READABLE = ".vti .mha .mhd .nrrd .nii .nii.gz .vtk .zfp, name_WxHxD_type.raw"
 
 
@@ -111,7 +112,7 @@ def _add_array(command):
 
 def _add_compress(commands):
     command = _add_command(commands, "compress", _compress, "compress an image with fixed-rate ZFP")
-    _add_input(command, "in")
+    command.add_argument("in", metavar="IN", type=Path, help=_COMPRESSIBLE)
     command.add_argument("out", metavar="OUT", type=Path, help="a .vti or .zfp file")
     _add_array(command)
     command.add_argument("--threads", type=int, default=0, help="0 (default) for one per core")
@@ -294,10 +295,10 @@ def _save(image, path, appended=False):
 
 def _compress(parsed):
     check_output(parsed.out, (".vti",) if parsed.appended else COMPRESSED_SUFFIXES)
-    image = _read(parsed, "in")
-    with progress_bar("Compressing") as progress:
-        volume = progiso.compress(
-            image, parsed.rate, parsed.array, parsed.component, parsed.threads, progress
+    source = getattr(parsed, "in")
+    with progress_bar(f"Compressing {source.name}") as progress:
+        volume = progiso.compress_file(
+            source, parsed.rate, parsed.array, parsed.component, parsed.threads, progress
         )
     _save(volume, parsed.out, parsed.appended)
     about = progiso.describe(volume)
