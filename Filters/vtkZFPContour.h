@@ -11,8 +11,8 @@
  *
  * The volume is never decoded as a whole. It is cut into bricks of BrickSize^3 cells; every thread
  * decodes one at a time and contours it with vtkFlyingEdges3D, and the parts are joined at the
- * points that they share. Beside the surface, that takes 2 MiB of memory a thread, for bricks of
- * the default size.
+ * points that they share. For bricks of the default size, that takes 2 MiB of memory a thread,
+ * beside the surface and, until they are joined, its parts, which take about two thirds as much.
  *
  * A compressed volume does not say between which values a brick's samples lie: the first update
  * decodes every brick once, and remembers their ranges (8 bytes a brick). As long as the input
