@@ -9,11 +9,20 @@ bool InSegment(uint block)
   return block - segment[0] < segment[1];
 }
 
+uint BlockBits()
+{
+#ifdef DECODES_COLORS
+  return uint(scene.Surface.w);
+#else
+  return uint(scene.Samples.w);
+#endif
+}
+
 // Word and bit of a block's first bit.
 uvec2 BlockStart(uint block)
 {
   uint high, low, carry;
-  umulExtended(block - segment[0], uint(scene.Samples.w), high, low);
+  umulExtended(block - segment[0], BlockBits(), high, low);
   low = uaddCarry(low, segment[2], carry);
   high += carry;
   return uvec2((high << 27) | (low >> 5), low & 31u);

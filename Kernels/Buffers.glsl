@@ -105,7 +105,7 @@ layout(std430, binding = BINDING_RAYS) buffer Rays { uint rays[]; };
 
 // ---- the block cache
 #ifdef BINDING_CACHE_VALUES
-// 64 samples a slot, x fastest; a stage that defines CACHE_BY_ROWS has them in rows of four.
+// 64 samples a slot, x fastest, and behind all slots likewise those of the volume that gives the colours; a stage that defines CACHE_BY_ROWS has them in rows of four.
 #ifdef CACHE_BY_ROWS
 layout(std430, binding = BINDING_CACHE_VALUES) buffer CacheValues { uvec4 cacheRows[]; };
 #else

@@ -32,6 +32,8 @@ bool Shows(uint pixel)
 {
 #ifdef HAS_NORMALS
   return normals[pixel] != NO_NORMAL;
+#elif defined(COLORED)
+  return hits[pixel] != NO_HIT && !isnan(ColorValueOf(pixel)); // all ones until it is found
 #else
   return hits[pixel] != NO_HIT;
 #endif

@@ -1,5 +1,6 @@
 // The normals of the hits that have come in (part of section 3.7), once a hit. Of a translucent image the hit is lit at
-// once and blended with what lies before it, and its ray goes on. Central differences reach a voxel beyond
+// once and blended with what lies before it, and its ray goes on. Where another volume gives the colours, its value at
+// the hit is found as well. Central differences reach a voxel beyond
 // the cell, also to the -x, -y and -z sides, where no ray may have asked for a block yet: such a hit asks, and waits.
 // In: Hits, Rays, CacheMap, CacheValues. Out: Normals or Layers, Rays, CacheRequests, CacheMap, Macrocells,
 // Control.
@@ -25,8 +26,8 @@
 
 layout(local_size_x = 64) in; // GROUP
 
-#ifdef LIT
-// True where the normal has to wait for blocks.
+#if defined(LIT) || defined(COLORED)
+// True where the normal, or the colour, has to wait for blocks.
 bool FindNormal(Ray ray, uint pixel, out vec3 normal)
 {
   SurfacePoint hit = PointOf(ray, hits[pixel]);
@@ -44,7 +45,12 @@ bool FindNormal(Ray ray, uint pixel, out vec3 normal)
     return true;
   }
   UseBlocks(first, reach);
+#ifdef COLORED
+  KeepColorValue(pixel, ColorValue(hit));
+#endif
+#ifdef LIT
   normal = ViewNormal(Gradient(hit), -normalize(EyeRayDirection(pixel)));
+#endif
   return false;
 }
 #endif
@@ -58,7 +64,7 @@ uint Finish(uint pixel)
 {
   vec3 normal = vec3(0.0);
   Ray ray = CameraRay(pixel);
-#ifdef LIT
+#if defined(LIT) || defined(COLORED)
   if (FindNormal(ray, pixel, normal))
   {
     return WAITS;
@@ -73,10 +79,12 @@ uint Finish(uint pixel)
 {
   vec3 normal;
   bool waits = FindNormal(CameraRay(pixel), pixel, normal);
+#ifdef HAS_NORMALS
   if (!waits)
   {
     normals[pixel] = PackNormal(normal);
   }
+#endif
   return waits ? WAITS : DONE;
 }
 #endif

@@ -1,6 +1,6 @@
 // What a pixel's ray has met, in sections of a word a pixel: the hit's key; its depth, the parameter t, of a translucent
-// image that of the first hit; with several isovalues the number of the one that was hit; where opaque geometry hides what
-// is behind it, the window's depth.
+// image that of the first hit; with several isovalues the number of the one that was hit; where another volume gives the
+// colours, its value; where opaque geometry hides what is behind it, the window's depth.
 
 struct Hit
 {
@@ -30,14 +30,33 @@ float DepthOf(uint pixel)
   return uintBitsToFloat(hits[ImagePixels() + pixel]);
 }
 
+#ifdef SEVERAL_ISOVALUES
+#define COLOR_SECTION 3u
+#else
+#define COLOR_SECTION 2u
+#endif
+#ifdef COLORED
+#define OBSTACLE_SECTION (COLOR_SECTION + 1u)
+#else
+#define OBSTACLE_SECTION COLOR_SECTION
+#endif
+
 float ObstacleOf(uint pixel)
 {
-#ifdef SEVERAL_ISOVALUES
-  return uintBitsToFloat(hits[3u * ImagePixels() + pixel]);
-#else
-  return uintBitsToFloat(hits[2u * ImagePixels() + pixel]);
-#endif
+  return uintBitsToFloat(hits[OBSTACLE_SECTION * ImagePixels() + pixel]);
 }
+
+#ifdef COLORED
+float ColorValueOf(uint pixel)
+{
+  return uintBitsToFloat(hits[COLOR_SECTION * ImagePixels() + pixel]);
+}
+
+void KeepColorValue(uint pixel, float value)
+{
+  hits[COLOR_SECTION * ImagePixels() + pixel] = floatBitsToUint(value);
+}
+#endif
 
 void KeepHit(uint pixel, Hit hit, float depth)
 {

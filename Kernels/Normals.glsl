@@ -71,6 +71,26 @@ Stencil PlaceStencil(ivec3 cell)
 #define SAMPLE(i, j, k) uintBitsToFloat(cacheValues[at.X.i + at.Y.j + at.Z.k])
 #endif
 
+#ifdef COLORED
+#ifdef HAS_CACHE_MAP
+#define COLOR_SAMPLE(i, j, k) uintBitsToFloat(cacheValues[64u * (NumberOfSlots() + \
+  SlotAt(bvec3(at.FurtherX.i, at.FurtherY.j, at.FurtherZ.k))) + at.X.i + at.Y.j + at.Z.k])
+#else
+#define COLOR_SAMPLE(i, j, k) uintBitsToFloat(cacheValues[64u * NumberOfSlots() + at.X.i + at.Y.j + at.Z.k])
+#endif
+
+// The trilinear interpolant of the volume that gives the colours.
+float ColorValue(SurfacePoint hit)
+{
+  Stencil at = PlaceStencil(hit.Cell);
+  vec4 low = vec4(COLOR_SAMPLE(y, y, y), COLOR_SAMPLE(z, y, y), COLOR_SAMPLE(y, z, y), COLOR_SAMPLE(z, z, y));
+  vec4 high = vec4(COLOR_SAMPLE(y, y, z), COLOR_SAMPLE(z, y, z), COLOR_SAMPLE(y, z, z), COLOR_SAMPLE(z, z, z));
+  vec4 face = mix(low, high, hit.Local.z);
+  vec2 edge = mix(face.xy, face.zw, hit.Local.y);
+  return mix(edge.x, edge.y, hit.Local.x);
+}
+#endif
+
 // Central differences at the cell's corners, interpolated. Planes y and z of the stencil are the cell's own.
 vec3 Gradient(SurfacePoint hit)
 {

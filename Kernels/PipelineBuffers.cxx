@@ -25,10 +25,10 @@ std::int64_t MacrocellBytes(const PipelineExtent& e)
   return (8 + 2 * 64 + (e.Cached ? 4 + 64 / 8 : 0)) * e.CoarseCells;
 }
 
-// of the hit the key and the depth, with several isovalues which it is, and the obstacle's depth
+// of the hit the key and the depth; see Hits.glsl for the rest
 std::int64_t HitBytes(const PipelineExtent& e)
 {
-  return 4 * (2 + e.SeveralIsovalues + e.Obstructed) * e.Pixels;
+  return 4 * (2 + e.SeveralIsovalues + e.Colored + e.Obstructed) * e.Pixels;
 }
 
 // the hits of a translucent image are lit at once
@@ -49,7 +49,7 @@ std::int64_t RayBytes(const PipelineExtent& e)
 
 std::int64_t ValueBytes(const PipelineExtent& e)
 {
-  return 256 * e.Slots;
+  return BytesPerSlot(e) * e.Slots;
 }
 
 std::int64_t MapBytes(const PipelineExtent& e)
@@ -81,6 +81,7 @@ const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers()
     { Buffer::Control,        "control",          "CONTROL",          Lifetime::Pipeline, ControlBytes,    "all stages",                            "all stages" },
     { Buffer::PassStatistics, "pass_statistics",  "PASS_STATISTICS",  Lifetime::Pipeline, StatisticsBytes, "PlanPass",                              "the mapper" },
     { Buffer::Payload,        "compressed",       "PAYLOAD",          Lifetime::Volume,   PayloadBytes,    "the mapper",                            "BlockRanges, DecodeBlocks" },
+    { Buffer::ColorPayload,   "compressed_colors", "PAYLOAD",         Lifetime::Volume,   PayloadBytes,    "the mapper",                            "DecodeColors" },
     { Buffer::Macrocells,     "macrocells",       "MACROCELLS",       Lifetime::Volume,   MacrocellBytes,  "BlockRanges, FindNormals, RequestBlocks, DecodeBlocks, CacheEvict, CacheReset", "CastRays, CastFewRays, FindNormals, RequestBlocks, DecodeBlocks" },
     { Buffer::Hits,           "hits",             "HITS",             Lifetime::Image,    HitBytes,        "CastRays, CastFewRays, the mapper",     "all stages that cast rays, Composite, Select" },
     { Buffer::Normals,        "normals",          "NORMALS",          Lifetime::Image,    NormalBytes,     "FindNormals",                           "FindNormals, Composite" },
@@ -94,6 +95,11 @@ const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers()
   } };
   // clang-format on
   return buffers;
+}
+
+std::int64_t BytesPerSlot(const PipelineExtent& extent)
+{
+  return extent.Colored ? 2 * 256 : 256;
 }
 
 std::int64_t BytesOf(Lifetime lifetime, const PipelineExtent& extent)

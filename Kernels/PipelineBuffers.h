@@ -13,6 +13,7 @@ enum class Buffer
   Control,
   PassStatistics,
   Payload,
+  ColorPayload,
   Macrocells,
   Hits,
   Normals,
@@ -43,12 +44,14 @@ struct PipelineExtent
   bool Obstructed = false;  ///< by opaque geometry, where translucent rays end
   bool Clipped = false;     ///< by planes
   bool Cropped = false;     ///< to regions
+  bool Colored = false;     ///< another volume gives the colours
 
   /// The features above, a bit each.
   std::uint32_t GetFeatures() const
   {
     return this->Cached | this->Lit << 1 | this->Detailed << 2 | this->SeveralIsovalues << 3 |
-      this->Translucent << 4 | this->Obstructed << 5 | this->Clipped << 6 | this->Cropped << 7;
+      this->Translucent << 4 | this->Obstructed << 5 | this->Clipped << 6 | this->Cropped << 7 |
+      this->Colored << 8;
   }
   /// Do rays begin and end in one pass?
   bool IsSinglePass() const { return !this->Cached && !this->Translucent; }
@@ -76,6 +79,9 @@ struct BufferInfo
 
 /// The table itself, in the order of the enumeration. The payload's size is the stream's.
 const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers();
+
+/// Bytes of the decoded samples of a cache slot.
+std::int64_t BytesPerSlot(const PipelineExtent& extent);
 
 /// Bytes of all buffers of a lifetime.
 std::int64_t BytesOf(Lifetime lifetime, const PipelineExtent& extent);

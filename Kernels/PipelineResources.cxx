@@ -152,7 +152,8 @@ void PipelineResources::Release()
   {
     this->Free(static_cast<Buffer>(i));
   }
-  this->FreePayload();
+  this->FreePayloads();
+  this->UploadPalette({});
   this->ForgetSnapshots();
   glDeleteBuffers(static_cast<GLsizei>(this->SpareSnapshots.size()), this->SpareSnapshots.data());
   this->SpareSnapshots.clear();
@@ -192,15 +193,28 @@ std::string PipelineResources::GetDescription()
 //------------------------------------------------------------------------------
 // Stages
 //------------------------------------------------------------------------------
-bool PipelineResources::Bind(Stage stage, const PayloadSegment* segment)
+// What the stage reads of a compressed stream; null where it reads none, or there is none.
+const PipelineResources::PayloadBuffers* PipelineResources::PayloadOf(Stage stage) const
+{
+  for (Buffer buffer : PipelineStages()[static_cast<int>(stage)].Buffers)
+  {
+    const auto found = this->Payloads.find(buffer);
+    if (found != this->Payloads.end())
+    {
+      return &found->second;
+    }
+  }
+  return nullptr;
+}
+
+bool PipelineResources::Bind(Stage stage, GLuint payload, const PayloadSegment* segment)
 {
   std::vector<Buffer> bound;
   std::vector<GLuint> names;
   for (Buffer buffer : PipelineStages()[static_cast<int>(stage)].Buffers)
   {
-    const GLuint name = buffer == Buffer::Payload
-      ? (segment ? this->SegmentNames[segment - this->Segments.data()] : 0)
-      : this->Names[Index(buffer)];
+    const bool stream = buffer == Buffer::Payload || buffer == Buffer::ColorPayload;
+    const GLuint name = stream ? payload : this->Names[Index(buffer)];
     if (name)
     {
       bound.push_back(buffer);
@@ -214,6 +228,7 @@ bool PipelineResources::Bind(Stage stage, const PayloadSegment* segment)
   }
   glUseProgram(program);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, this->SceneBuffer);
+  glBindBufferBase(GL_UNIFORM_BUFFER, 1, this->PaletteBuffer);
   for (std::size_t i = 0; i < names.size(); ++i)
   {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(i), names[i]);
@@ -231,13 +246,13 @@ bool PipelineResources::Bind(Stage stage, const PayloadSegment* segment)
 template <typename Launch>
 void PipelineResources::Run(Stage stage, const Launch& launch)
 {
-  const std::vector<Buffer>& buffers = PipelineStages()[static_cast<int>(stage)].Buffers;
-  const bool reads = std::count(buffers.begin(), buffers.end(), Buffer::Payload) > 0;
-  const std::size_t times = reads && !this->Segments.empty() ? this->Segments.size() : 1;
+  const PayloadBuffers* payload = this->PayloadOf(stage);
+  const std::size_t times = payload ? payload->Segments.size() : 1;
   this->BeginTiming(stage);
   for (std::size_t i = 0; i < times; ++i)
   {
-    if (this->Bind(stage, reads && !this->Segments.empty() ? &this->Segments[i] : nullptr))
+    if (this->Bind(
+          stage, payload ? payload->Names[i] : 0, payload ? &payload->Segments[i] : nullptr))
     {
       launch();
       glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
@@ -279,6 +294,7 @@ void PipelineResources::Draw(Stage stage, const std::array<float, 4>* selected)
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, 0);
   }
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, 0);
+  glBindBufferBase(GL_UNIFORM_BUFFER, 1, 0);
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, 0);
   glUseProgram(0);
 }
@@ -352,9 +368,13 @@ void PipelineResources::ForgetStages(const std::set<Stage>& except)
 std::int64_t PipelineResources::GetBytes(Buffer buffer) const
 {
   std::int64_t bytes = this->Bytes[Index(buffer)];
-  for (const PayloadSegment& segment : this->Segments)
+  const auto payload = this->Payloads.find(buffer);
+  if (payload != this->Payloads.end())
   {
-    bytes += buffer == Buffer::Payload ? segment.Bytes : 0;
+    for (const PayloadSegment& segment : payload->second.Segments)
+    {
+      bytes += segment.Bytes;
+    }
   }
   return bytes;
 }
@@ -476,9 +496,9 @@ void PipelineResources::Fill(Buffer buffer, std::uint32_t value)
 
 // The stages only read it, and it may be too large for a second copy.
 bool PipelineResources::UploadPayload(
-  const unsigned char* stream, const std::vector<PayloadSegment>& segments)
+  Buffer which, const unsigned char* stream, const std::vector<PayloadSegment>& segments)
 {
-  this->FreePayload();
+  PayloadBuffers& payload = this->Payloads[which];
   for (const PayloadSegment& segment : segments)
   {
     GLuint name = 0;
@@ -486,8 +506,8 @@ bool PipelineResources::UploadPayload(
     {
       return false;
     }
-    this->SegmentNames.push_back(name);
-    this->Segments.push_back(segment);
+    payload.Names.push_back(name);
+    payload.Segments.push_back(segment);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
     glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(segment.Bytes),
       stream + segment.FirstByte);
@@ -496,11 +516,14 @@ bool PipelineResources::UploadPayload(
   return true;
 }
 
-void PipelineResources::FreePayload()
+void PipelineResources::FreePayloads()
 {
-  glDeleteBuffers(static_cast<GLsizei>(this->SegmentNames.size()), this->SegmentNames.data());
-  this->SegmentNames.clear();
-  this->Segments.clear();
+  for (const auto& entry : this->Payloads)
+  {
+    const std::vector<GLuint>& names = entry.second.Names;
+    glDeleteBuffers(static_cast<GLsizei>(names.size()), names.data());
+  }
+  this->Payloads.clear();
 }
 
 //------------------------------------------------------------------------------
@@ -556,6 +579,25 @@ void PipelineResources::UploadScene(const SceneBlock& scene)
 {
   glBindBuffer(GL_UNIFORM_BUFFER, this->SceneBuffer);
   glBufferSubData(GL_UNIFORM_BUFFER, 0, sizeof(SceneBlock), &scene);
+  glBindBuffer(GL_UNIFORM_BUFFER, 0);
+}
+
+void PipelineResources::UploadPalette(const std::vector<float>& palette)
+{
+  this->PaletteBytes = static_cast<std::int64_t>(palette.size() * sizeof(float));
+  if (palette.empty())
+  {
+    glDeleteBuffers(1, &this->PaletteBuffer);
+    this->PaletteBuffer = 0;
+    return;
+  }
+  if (!this->PaletteBuffer)
+  {
+    glGenBuffers(1, &this->PaletteBuffer);
+  }
+  glBindBuffer(GL_UNIFORM_BUFFER, this->PaletteBuffer);
+  glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(this->PaletteBytes), palette.data(),
+    GL_DYNAMIC_DRAW);
   glBindBuffer(GL_UNIFORM_BUFFER, 0);
 }
 

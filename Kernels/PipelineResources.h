@@ -71,16 +71,19 @@ public:
   std::int64_t GetStagingBytes() const;
   ///@}
 
-  ///@{ The compressed stream, in as many buffers as it takes.
-  bool UploadPayload(const unsigned char* stream, const std::vector<PayloadSegment>& segments);
-  void FreePayload();
-  const std::vector<PayloadSegment>& GetSegments() const { return this->Segments; }
+  ///@{ A compressed stream, in as many buffers as it takes: of Payload or of ColorPayload.
+  bool UploadPayload(
+    Buffer which, const unsigned char* stream, const std::vector<PayloadSegment>& segments);
+  void FreePayloads();
   ///@}
 
   ///@{ Traffic with the CPU. It waits for the GPU only where it reads.
   void Read(Buffer buffer, std::int64_t offset, void* data, std::int64_t bytes);
   void Write(Buffer buffer, std::size_t offset, const void* data, std::size_t bytes);
   void UploadScene(const SceneBlock& scene);
+  /// Colours over a range, see Shading.glsl; none: nothing is left of it.
+  void UploadPalette(const std::vector<float>& palette);
+  std::int64_t GetPaletteBytes() const { return this->PaletteBytes; }
   /// Copy the depths of a part of the current framebuffer (width, height, origin) into a buffer.
   void CaptureDepths(const std::int32_t image[4], Buffer buffer, std::int64_t offset);
   ///@}
@@ -135,12 +138,19 @@ private:
     GLuint Begin, End;
   };
 
+  struct PayloadBuffers
+  {
+    std::vector<GLuint> Names;
+    std::vector<PayloadSegment> Segments;
+  };
+
   bool CheckContext();
   void AskLimits();
   bool Allocate(Buffer buffer, std::int64_t bytes);
   bool MakeBuffer(GLuint& name, std::int64_t bytes, std::int64_t largestPlain, const char* what);
   void Free(Buffer buffer);
-  bool Bind(Stage stage, const PayloadSegment* segment);
+  const PayloadBuffers* PayloadOf(Stage stage) const;
+  bool Bind(Stage stage, GLuint payload, const PayloadSegment* segment);
   template <typename Launch>
   void Run(Stage stage, const Launch& launch);
   void BeginTiming(Stage stage);
@@ -148,12 +158,13 @@ private:
 
   std::array<GLuint, NumberOfBuffers> Names = {};
   std::array<std::int64_t, NumberOfBuffers> Bytes = {};
-  std::vector<GLuint> SegmentNames;
-  std::vector<PayloadSegment> Segments;
+  std::map<Buffer, PayloadBuffers> Payloads;
   std::shared_ptr<PipelinePrograms> Programs;
   PipelineExtent Extent;
 
   GLuint SceneBuffer = 0;
+  GLuint PaletteBuffer = 0;
+  std::int64_t PaletteBytes = 0;
   GLuint Staging = 0; ///< what the CPU reads and writes passes through it
   std::int64_t StagingBytes = 0;
   std::deque<Order> Ordered; ///< snapshots under way, oldest first

@@ -21,6 +21,7 @@ const std::vector<StageInfo>& PipelineStages()
     { Stage::FindNormals,   "FindNormals",   { B::Control, B::Macrocells, B::CacheMap, B::CacheValues, B::CacheRequests, B::Hits, B::Normals, B::Layers, B::Rays } },
     { Stage::RequestBlocks, "RequestBlocks", { B::Control, B::Macrocells, B::CacheMap, B::CacheRequests, B::Hits, B::Rays } },
     { Stage::DecodeBlocks,  "DecodeBlocks",  { B::Control, B::Payload, B::Macrocells, B::CacheMap, B::CacheFreeSlots, B::CacheRequests, B::CacheValues } },
+    { Stage::DecodeColors,  "DecodeColors",  { B::Control, B::ColorPayload, B::Macrocells, B::CacheMap, B::CacheRequests, B::CacheValues } },
     { Stage::Composite,     "Composite",     { B::Hits, B::Normals, B::Layers } },
     { Stage::Select,        "Select",        { B::Hits } },
   };
@@ -102,7 +103,7 @@ std::string AssembleShader(const std::string& file, const std::vector<Buffer>& b
   const std::pair<bool, const char*> features[] = { { extent.Lit, "LIT" },
     { extent.SeveralIsovalues, "SEVERAL_ISOVALUES" }, { extent.Translucent, "TRANSLUCENT" },
     { extent.Obstructed, "OBSTRUCTED" }, { extent.Clipped, "CLIPPED" },
-    { extent.Cropped, "CROPPED" } };
+    { extent.Cropped, "CROPPED" }, { extent.Colored, "COLORED" } };
   for (const auto& feature : features)
   {
     out << (feature.first ? std::string("#define ") + feature.second + "\n" : "");

@@ -22,6 +22,7 @@ enum class Stage
   FindNormals,
   RequestBlocks,
   DecodeBlocks,
+  DecodeColors,
   Composite,
   Select,
   NumberOfStages

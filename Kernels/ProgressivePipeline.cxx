@@ -10,7 +10,8 @@
 namespace
 {
 constexpr std::int64_t AutomaticValues = 1LL
-  << 30;                                  // bytes of decoded blocks where no budget is set
+  << 30; // bytes of decoded blocks where no budget is set
+constexpr std::int64_t PaletteBytes = 16 * (1 + 256);
 constexpr std::int64_t LeastSlots = 2048; // any 64 rays find room for all that they need at once
 constexpr std::int64_t LeastPages = 512;  // of the block map, likewise
 constexpr std::int64_t SlotsPerPage = 8;  // else
@@ -71,8 +72,8 @@ void ProgressivePipeline::Release()
 // All GPU memory beside the compressed stream.
 std::int64_t ProgressivePipeline::BytesWith(const PipelineExtent& extent) const
 {
-  std::int64_t bytes =
-    static_cast<std::int64_t>(sizeof(SceneBlock)) + PipelineResources::GetStagingLimit();
+  std::int64_t bytes = static_cast<std::int64_t>(sizeof(SceneBlock)) +
+    PipelineResources::GetStagingLimit() + (extent.Colored ? PaletteBytes : 0);
   for (Lifetime lifetime :
     { Lifetime::Pipeline, Lifetime::Volume, Lifetime::Image, Lifetime::Cache })
   {
@@ -122,8 +123,8 @@ std::int64_t ProgressivePipeline::MinimumSlots() const
 std::int64_t ProgressivePipeline::MaximumSlots() const
 {
   std::int64_t least = 0;
-  std::int64_t most =
-    std::min<std::int64_t>(this->Scene.Blocks[3], this->Gpu.GetLargestBuffer() / 256);
+  std::int64_t most = std::min<std::int64_t>(
+    this->Scene.Blocks[3], this->Gpu.GetLargestBuffer() / BytesPerSlot(this->Extent));
   while (least < most)
   {
     const std::int64_t middle = DivideUp(least + most, 2);
@@ -163,10 +164,11 @@ void ProgressivePipeline::SetVolume(const PipelineVolume& volume)
     blocks *= this->Scene.Blocks[axis];
     coarseCells *= this->Scene.CoarseCells[axis];
   }
-  this->Scene.Samples[3] = volume.BlockBits;
+  this->Scene.Samples[3] = volume.Values.BlockBits;
   this->Scene.Blocks[3] = static_cast<std::int32_t>(blocks);
   this->Scene.CoarseCells[3] = static_cast<std::int32_t>(coarseCells);
   this->Extent.CoarseCells = coarseCells;
+  this->Extent.Colored = volume.Colors.Data != nullptr;
   this->TouchedSlots.clear();
 }
 
@@ -194,7 +196,8 @@ void ProgressivePipeline::SetSettings(const PipelineSettings& settings)
 }
 
 // As few segments as the largest buffer allows, of whole layers of macrocells.
-bool ProgressivePipeline::SplitPayload(std::vector<PayloadSegment>& segments)
+bool ProgressivePipeline::SplitPayload(
+  const CompressedStream& stream, std::vector<PayloadSegment>& segments)
 {
   const std::int64_t largest =
     std::min(this->Gpu.GetLargestBuffer(), static_cast<std::int64_t>(1) << 33);
@@ -202,7 +205,7 @@ bool ProgressivePipeline::SplitPayload(std::vector<PayloadSegment>& segments)
     static_cast<std::int64_t>(this->Scene.Blocks[0]) * this->Scene.Blocks[1];
   const std::int64_t layerCells =
     static_cast<std::int64_t>(this->Scene.CoarseCells[0]) * this->Scene.CoarseCells[1];
-  const std::int64_t bits = this->Volume.BlockBits;
+  const std::int64_t bits = stream.BlockBits;
   // one more layer of blocks, which the last macrocells reach into, and a word for the first bits
   const std::int64_t layers = (8 * (largest - 8) / (layerBlocks * bits) - 1) / 4;
   if (layers < 1)
@@ -219,8 +222,7 @@ bool ProgressivePipeline::SplitPayload(std::vector<PayloadSegment>& segments)
     const std::int64_t held = std::min<std::int64_t>(end + layerBlocks, this->Scene.Blocks[3]);
     PayloadSegment segment;
     segment.FirstByte = begin * bits / 32 * 4;
-    segment.Bytes =
-      std::min(DivideUp(held * bits, 32) * 4, this->Volume.StreamBytes) - segment.FirstByte;
+    segment.Bytes = std::min(DivideUp(held * bits, 32) * 4, stream.Size) - segment.FirstByte;
     segment.FirstBlock = static_cast<std::uint32_t>(begin);
     segment.Blocks = static_cast<std::uint32_t>(end - begin);
     segment.FirstBit = static_cast<std::uint32_t>(begin * bits % 32);
@@ -231,12 +233,28 @@ bool ProgressivePipeline::SplitPayload(std::vector<PayloadSegment>& segments)
   return true;
 }
 
+bool ProgressivePipeline::UploadStreams()
+{
+  this->Gpu.FreePayloads();
+  std::vector<PayloadSegment> segments;
+  if (!this->SplitPayload(this->Volume.Values, segments) ||
+    !this->Gpu.UploadPayload(Buffer::Payload, this->Volume.Values.Data, segments))
+  {
+    return false;
+  }
+  if (!this->Extent.Colored)
+  {
+    return true;
+  }
+  segments.clear();
+  return this->SplitPayload(this->Volume.Colors, segments) &&
+    this->Gpu.UploadPayload(Buffer::ColorPayload, this->Volume.Colors.Data, segments);
+}
+
 // The stream goes to the GPU and stays there; its macrocells are made (section 3.1).
 bool ProgressivePipeline::LoadVolume()
 {
-  std::vector<PayloadSegment> segments;
-  if (!this->SplitPayload(segments) || !this->Gpu.Allocate(Lifetime::Volume, this->Extent) ||
-    !this->Gpu.UploadPayload(this->Volume.Stream, segments))
+  if (!this->Gpu.Allocate(Lifetime::Volume, this->Extent) || !this->UploadStreams())
   {
     return false;
   }
@@ -247,15 +265,17 @@ bool ProgressivePipeline::LoadVolume()
 // The stream goes to the GPU, is decoded, and goes again.
 bool ProgressivePipeline::LoadWholeVolume()
 {
-  std::vector<PayloadSegment> segments;
-  if (!this->SplitPayload(segments) || !this->Gpu.Allocate(Lifetime::Volume, this->Extent) ||
-    !this->Gpu.Allocate(Lifetime::Cache, this->Extent) ||
-    !this->Gpu.UploadPayload(this->Volume.Stream, segments))
+  if (!this->Gpu.Allocate(Lifetime::Volume, this->Extent) ||
+    !this->Gpu.Allocate(Lifetime::Cache, this->Extent) || !this->UploadStreams())
   {
     return false;
   }
   this->Gpu.Dispatch(Stage::DecodeBlocks, DivideUp(this->Extent.Slots, 32));
-  this->Gpu.FreePayload();
+  if (this->Extent.Colored)
+  {
+    this->Gpu.Dispatch(Stage::DecodeColors, DivideUp(this->Extent.Slots, 32));
+  }
+  this->Gpu.FreePayloads();
   this->Gpu.Dispatch(Stage::BlockRanges, this->Extent.CoarseCells);
   return true;
 }
@@ -328,6 +348,7 @@ void ProgressivePipeline::FillInScene(const SceneBlock& scene)
   std::copy(own.Blocks, own.Blocks + 4, this->Scene.Blocks);
   std::copy(own.CoarseCells, own.CoarseCells + 4, this->Scene.CoarseCells);
   std::copy(own.Cache, own.Cache + 4, this->Scene.Cache);
+  this->Scene.Surface[3] = this->Volume.Colors.BlockBits;
   this->Scene.Cache[2] = static_cast<std::uint32_t>(this->Settings.SpeculationLimit);
   // a software renderer has no lanes to keep busy, and its work groups cost much
   this->Scene.Policy[0] = this->Gpu.IsSoftware() ? 0 : FewRays;
@@ -358,8 +379,8 @@ bool ProgressivePipeline::MakeRoom(bool newImage)
 {
   this->Budget = this->ChooseBudget();
   const PipelineExtent whole = this->WholeVolume();
-  const bool fits =
-    this->BytesWith(whole) <= this->Budget && 256 * whole.Slots <= this->Gpu.GetLargestBuffer();
+  const bool fits = this->BytesWith(whole) <= this->Budget &&
+    BytesPerSlot(whole) * whole.Slots <= this->Gpu.GetLargestBuffer();
   const bool cached = !(fits && this->Settings.DecodeWholeVolume);
   const std::int64_t most = this->MaximumSlots();
   if (cached && most == 0)
@@ -372,7 +393,7 @@ bool ProgressivePipeline::MakeRoom(bool newImage)
   std::int64_t slots = cached ? std::min(this->Extent.Slots, most) : whole.Slots;
   if (reload)
   {
-    this->Gpu.FreePayload();
+    this->Gpu.FreePayloads();
     slots = cached ? 0 : whole.Slots;
   }
   this->Started = this->Started && slots == this->Extent.Slots && !reload;
@@ -423,7 +444,7 @@ void ProgressivePipeline::Start()
   std::set<Stage> forVolume = { Stage::BlockRanges };
   if (!this->Extent.Cached)
   {
-    forVolume.insert(Stage::DecodeBlocks);
+    forVolume.insert({ Stage::DecodeBlocks, Stage::DecodeColors });
   }
   this->Gpu.ForgetStages(forVolume);
   this->StartTime = Clock::now();
@@ -436,7 +457,7 @@ void ProgressivePipeline::Start()
   this->Gpu.Fill(Buffer::Layers, 0);
   if (this->Extent.Obstructed)
   {
-    const std::int64_t section = this->Extent.SeveralIsovalues ? 3 : 2;
+    const std::int64_t section = 2 + this->Extent.SeveralIsovalues + this->Extent.Colored;
     this->Gpu.CaptureDepths(this->Scene.Image, Buffer::Hits, 4 * section * this->Extent.Pixels);
   }
   const std::uint32_t yes = 1;
@@ -458,7 +479,7 @@ void ProgressivePipeline::RunPass()
   {
     this->Gpu.DispatchIndirect(Stage::CastFewRays, offsetof(ControlBlock, FewGroups));
   }
-  if (this->Extent.Lit || this->Extent.Translucent)
+  if (this->Extent.Lit || this->Extent.Translucent || this->Extent.Colored)
   {
     this->Gpu.DispatchIndirect(Stage::FindNormals, offsetof(ControlBlock, NormalGroups));
   }
@@ -466,6 +487,10 @@ void ProgressivePipeline::RunPass()
   {
     this->Gpu.DispatchIndirect(Stage::RequestBlocks, offsetof(ControlBlock, RequestGroups));
     this->Gpu.DispatchIndirect(Stage::DecodeBlocks, offsetof(ControlBlock, DecodeGroups));
+  }
+  if (this->Extent.Cached && this->Extent.Colored)
+  {
+    this->Gpu.DispatchIndirect(Stage::DecodeColors, offsetof(ControlBlock, DecodeGroups));
   }
   this->Gpu.Dispatch(Stage::PlanPass, 1);
   ++this->PassesSubmitted;

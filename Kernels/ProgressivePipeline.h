@@ -15,13 +15,20 @@
 #include <string>
 #include <vector>
 
-/// A fixed-rate ZFP stream of 4^3 blocks and the grid it stands for.
+/// A fixed-rate ZFP stream of 4^3 blocks; it stays valid: the pipeline uploads it when it has to.
+struct CompressedStream
+{
+  const unsigned char* Data = nullptr;
+  std::int64_t Size = 0;
+  int BlockBits = 0;
+};
+
+/// Samples on a grid, and optionally others on the same grid that give the colours.
 struct PipelineVolume
 {
-  const unsigned char* Stream = nullptr; ///< stays valid: the pipeline uploads it when it has to
-  std::int64_t StreamBytes = 0;
   int Samples[3] = { 0, 0, 0 };
-  int BlockBits = 0;
+  CompressedStream Values;
+  CompressedStream Colors;
 };
 
 struct PipelineSettings
@@ -64,6 +71,8 @@ public:
   /// Take another volume.
   void SetVolume(const PipelineVolume& volume);
   void SetSettings(const PipelineSettings& settings);
+  /// Colours for the volume that gives them, see Shading.glsl; none where there is no such volume.
+  void SetPalette(const std::vector<float>& palette) { this->Gpu.UploadPalette(palette); }
   /// Forget all decoded blocks.
   void EmptyCache();
   /// The image's size, camera, isovalue and look; the pipeline fills in what it knows itself, and
@@ -116,7 +125,8 @@ private:
   std::int64_t MinimumSlots() const;
   std::int64_t MaximumSlots() const;
 
-  bool SplitPayload(std::vector<PayloadSegment>& segments);
+  bool SplitPayload(const CompressedStream& stream, std::vector<PayloadSegment>& segments);
+  bool UploadStreams();
   bool LoadVolume();
   bool LoadWholeVolume();
   bool ResizeCache(std::int64_t slots);

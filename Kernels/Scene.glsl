@@ -38,7 +38,8 @@ layout(std140, binding = 0) uniform Scene
   ivec4 Image;       // width and height of the viewport, its origin in the window
   uvec4 Cache;       // slots, pages of the block map, speculation limit, 1 where it cannot grow
   uvec4 Policy;      // few rays: as many pixels a ray; pixels that a ray has for each block it looks ahead
-  ivec4 Surface;     // number of isovalues, of clipping planes, bits of the regions that are drawn
+  ivec4 Surface;     // number of isovalues, of clipping planes, bits of the regions that are drawn; bits per
+                     // block of the stream that gives the colours
   vec4 Isovalues[MAX_ISOVALUES]; // each as a sum of two floats
   mat4 NormalMatrix; // index-space gradient to view-space normal (3x3)
   vec4 DepthTerms; // clip-space z and w as functions of t: z = x + y t, w = z + w t
@@ -54,8 +55,8 @@ scene;
 #if defined(TRANSLUCENT) || defined(CROPPED)
 #define MANY_CROSSINGS // not every crossing of a ray with a surface is its hit
 #endif
-#if defined(HAS_RAYS) && (defined(LIT) || defined(TRANSLUCENT))
-#define HIT_LIST // hits go on, to be lit or blended
+#if defined(HAS_RAYS) && (defined(LIT) || defined(TRANSLUCENT) || defined(COLORED))
+#define HIT_LIST // hits go on, to be lit, coloured or blended
 #endif
 
 // Dispatches are folded into two dimensions where one would exceed MAX_GROUPS.

@@ -1,6 +1,25 @@
 // Light on a surface, by Phong's model as VTK's volume mapper has it, in view coordinates. Two-sided, a light reaches the
 // surface from either side, one-sided only from where the values are lower.
 
+#ifdef COLORED
+#define PALETTE 256
+
+// Colours over a range of values: low, 1 / (high - low).
+layout(std140, binding = 1) uniform Palette
+{
+  vec4 Range;
+  vec4 Colors[PALETTE];
+}
+palette;
+
+vec3 PaletteColor(float value)
+{
+  float at = clamp((value - palette.Range.x) * palette.Range.y, 0.0, 1.0) * float(PALETTE - 1);
+  int below = min(int(at), PALETTE - 2);
+  return mix(palette.Colors[below].rgb, palette.Colors[below + 1].rgb, at - float(below));
+}
+#endif
+
 #ifdef LIT
 // What of a light arrives, and from where.
 float Attenuation(Light light, vec3 position, out vec3 toLight)
@@ -45,7 +64,11 @@ vec3 Illuminate(vec3 position, vec3 normal, vec3 toViewer, vec3 surfaceColor)
 // Colour of a surface at parameter t of a pixel's ray; unlit, the normal does not matter.
 vec3 Shade(uint pixel, float t, vec3 normal, int surface)
 {
+#ifdef COLORED
+  vec3 color = PaletteColor(ColorValueOf(pixel));
+#else
   vec3 color = scene.Colors[surface].rgb;
+#endif
 #ifdef LIT
   vec3 direction = EyeRayDirection(pixel);
   color = Illuminate(EyeRayOrigin(pixel) + t * direction, normal, -normalize(direction), color);

@@ -264,7 +264,7 @@ DecodedBlock DecodeBlock(uint block, uint lane)
     return decoded;
   }
   int exponent = int(TakeBits(bits, ZFP_EXPONENT_BITS)) - ZFP_EXPONENT_BIAS - 30;
-  DecodePlanes(bits, uint(scene.Samples.w) - 1u - ZFP_EXPONENT_BITS, lane);
+  DecodePlanes(bits, BlockBits() - 1u - ZFP_EXPONENT_BITS, lane);
   IntegerBlock integers = Reorder(TransposePlanes(0u, lane), TransposePlanes(32u, lane));
   InverseTransform(integers);
 #define DEQUANTIZE_ROW(r) decoded.Row[r] = DequantizeRow(integers.Row[r], exponent);

@@ -8,6 +8,7 @@
 
 #include "vtkCamera.h"
 #include "vtkCellData.h"
+#include "vtkColorTransferFunction.h"
 #include "vtkCommand.h"
 #include "vtkCompressedVolume.h"
 #include "vtkContourValues.h"
@@ -31,6 +32,7 @@
 #include "vtkPropCollection.h"
 #include "vtkRenderWindowInteractor.h"
 #include "vtkRenderer.h"
+#include "vtkScalarsToColors.h"
 #include "vtkTable.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVolume.h"
@@ -55,15 +57,42 @@ double MillisecondsSince(Clock::time_point start)
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-// The pipeline's view of a volume; words of 64 bits, as zfp writes them.
+// The pipeline's view of a stream; words of 64 bits, as zfp writes them.
+CompressedStream DescribeStream(vtkCompressedVolume* source)
+{
+  CompressedStream stream;
+  stream.Data = source->GetStream()->GetPointer(0);
+  stream.Size = source->GetStream()->GetNumberOfValues() / 8 * 8;
+  stream.BlockBits = source->GetBlockBits();
+  return stream;
+}
+
 PipelineVolume DescribeVolume(vtkCompressedVolume* source)
 {
   PipelineVolume volume;
-  volume.Stream = source->GetStream()->GetPointer(0);
-  volume.StreamBytes = source->GetStream()->GetNumberOfValues() / 8 * 8;
+  volume.Values = DescribeStream(source);
   source->GetDimensions(volume.Samples);
-  volume.BlockBits = source->GetBlockBits();
   return volume;
+}
+
+// 256 colours over a table's range, as in Shading.glsl.
+std::vector<float> MakePalette(vtkScalarsToColors* table)
+{
+  const int colors = 256;
+  const double* range = table->GetRange();
+  const double extent = range[1] - range[0];
+  std::vector<float> palette = { static_cast<float>(range[0]),
+    extent > 0.0 ? static_cast<float>(1.0 / extent) : 0.0f, 0.0f, 0.0f };
+  for (int i = 0; i < colors; ++i)
+  {
+    double color[3];
+    table->GetColor(range[0] + extent * i / (colors - 1), color);
+    for (double channel : { color[0], color[1], color[2], 1.0 })
+    {
+      palette.push_back(static_cast<float>(channel));
+    }
+  }
+  return palette;
 }
 
 // The samples of blocks, 64 each, in x-fastest order.
@@ -115,21 +144,25 @@ public:
   void RequestRender(vtkOpenGLRenderWindow* window);
   void FillStatistics();
   void ReleaseGraphics();
-  void ReleaseInput();
   bool Report(const std::string& problem);
 
   vtkProgressiveIsosurfaceMapper* Owner;
   ProgressivePipeline Pipeline;
   vtkWeakPointer<vtkOpenGLRenderWindow> Window;
 
-  vtkSmartPointer<vtkImageData> Compressed; // the input, or what it was compressed to
-  vtkNew<vtkCompressedVolume> Volume;
-  // what Compressed was made from, when, and how: image, array, rate, component
-  using SourceKey =
-    std::tuple<vtkImageData*, vtkMTimeType, vtkDataArray*, vtkMTimeType, double, int>;
-  SourceKey Source;
-  vtkTimeStamp VolumeTime; // of Compressed; the pipeline has the one of HandOverTime
+  // A volume, compressed; what it was made from, when, and how: image, array, rate, component.
+  struct Compressed
+  {
+    using Key = std::tuple<vtkImageData*, vtkMTimeType, vtkDataArray*, vtkMTimeType, double, int>;
+    vtkSmartPointer<vtkImageData> Image; // the input, or what it was compressed to
+    vtkNew<vtkCompressedVolume> Volume;
+    Key Source;
+  };
+  Compressed Values;
+  Compressed Colors;       // no image: another volume gives no colours
+  vtkTimeStamp VolumeTime; // of both; the pipeline has those of HandOverTime
   vtkTimeStamp HandOverTime;
+  std::vector<float> Palette;
 
   SceneBlock Scene;
   bool HaveScene = false;
@@ -146,8 +179,16 @@ public:
 
 private:
   vtkDataArray* FindArray(vtkImageData* image, bool& cellData);
-  vtkSmartPointer<vtkImageData> Compress(vtkImageData* image, vtkDataArray* array, bool cellData);
+  vtkDataArray* FindColorArray(vtkImageData* image);
+  vtkSmartPointer<vtkImageData> Compress(
+    vtkImageData* image, vtkDataArray* array, bool cellData, int component);
+  bool Take(
+    vtkImageData* image, vtkDataArray* array, bool cellData, int component, Compressed& into);
+  void Release(Compressed& volume);
+  bool UpdateValues(vtkImageData* image);
+  bool UpdateColors(vtkImageData* image);
   std::pair<int, vtkMTimeType> FindObstacles(vtkRenderer* renderer, vtkVolume* volume) const;
+  bool UpdatePalette(vtkVolumeProperty* property);
   bool MayRefineLater(vtkOpenGLRenderWindow* window) const;
   void OnTimer(vtkObject*, unsigned long, void* data);
 };
@@ -219,7 +260,7 @@ vtkDataArray* vtkProgressiveIsosurfaceMapper::Internals::FindArray(
 }
 
 vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceMapper::Internals::Compress(
-  vtkImageData* image, vtkDataArray* array, bool cellData)
+  vtkImageData* image, vtkDataArray* array, bool cellData, int component)
 {
   vtkNew<vtkImageData> single;
   single->CopyStructure(image);
@@ -238,18 +279,118 @@ vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceMapper::Internals::Compres
     cellData ? vtkDataObject::FIELD_ASSOCIATION_CELLS : vtkDataObject::FIELD_ASSOCIATION_POINTS,
     vtkDataSetAttributes::SCALARS);
   compress->SetRate(this->Owner->Rate);
-  compress->SetComponent(this->Owner->Component);
+  compress->SetComponent(component);
   compress->Update();
   return compress->GetOutput();
 }
 
-void vtkProgressiveIsosurfaceMapper::Internals::ReleaseInput()
+void vtkProgressiveIsosurfaceMapper::Internals::Release(Compressed& volume)
 {
-  this->Compressed = nullptr;
-  this->Source = SourceKey();
+  if (volume.Image)
+  {
+    this->VolumeTime.Modified();
+  }
+  volume.Image = nullptr;
+  volume.Source = Compressed::Key();
 }
 
-// Makes sure that Compressed and Volume are those of the present input; compresses a plain one.
+// Makes sure that `into` is of this image; compresses an array of a plain one.
+bool vtkProgressiveIsosurfaceMapper::Internals::Take(
+  vtkImageData* image, vtkDataArray* array, bool cellData, int component, Compressed& into)
+{
+  // of the mapper's own parameters only these make a plain image another volume
+  const Compressed::Key key = { image, image->GetMTime(), array, array ? array->GetMTime() : 0,
+    array ? this->Owner->Rate : 0.0, array ? component : 0 };
+  if (into.Image && key == into.Source)
+  {
+    return true;
+  }
+  this->Release(into);
+  vtkSmartPointer<vtkImageData> volume = image;
+  if (array)
+  {
+    volume = this->Compress(image, array, cellData, component);
+  }
+  if (!into.Volume->Read(volume))
+  {
+    return array ? false // the filter has told why
+                 : this->Report(into.Volume->GetErrorMessage());
+  }
+  into.Image = volume;
+  into.Source = key;
+  this->VolumeTime.Modified();
+  return true;
+}
+
+bool vtkProgressiveIsosurfaceMapper::Internals::UpdateValues(vtkImageData* image)
+{
+  const bool compressed = vtkCompressedVolume::IsCompressed(image);
+  bool cellData = false;
+  vtkDataArray* array = compressed ? nullptr : this->FindArray(image, cellData);
+  if (!compressed && !array)
+  {
+    return this->Report("the input image has no scalars: select an array that it has");
+  }
+  return this->Take(image, array, cellData, this->Owner->Component, this->Values);
+}
+
+// The array of ColorArrayName, beside the one that is rendered.
+vtkDataArray* vtkProgressiveIsosurfaceMapper::Internals::FindColorArray(vtkImageData* image)
+{
+  const char* name = this->Owner->ColorArrayName;
+  vtkDataSetAttributes* attributes =
+    this->Values.Volume->GetAssociation() == vtkCompressedVolume::CellData
+    ? static_cast<vtkDataSetAttributes*>(image->GetCellData())
+    : image->GetPointData();
+  vtkDataArray* array = attributes->GetArray(name);
+  if (!array)
+  {
+    this->Report(std::string("the input has no array \"") + name +
+      "\" beside the one that is rendered: name one that it has, or connect the colours' volume to "
+      "port 1");
+  }
+  return array;
+}
+
+// The volume that gives the colours: of port 1, or of another array of the input.
+bool vtkProgressiveIsosurfaceMapper::Internals::UpdateColors(vtkImageData* image)
+{
+  vtkProgressiveIsosurfaceMapper* self = this->Owner;
+  const bool named = self->ColorArrayName && *self->ColorArrayName;
+  const bool connected = self->GetNumberOfInputConnections(1) > 0;
+  if (!connected && !named)
+  {
+    this->Release(this->Colors);
+    return true;
+  }
+  if (connected)
+  {
+    self->GetInputAlgorithm(1, 0)->Update();
+    image = vtkImageData::SafeDownCast(self->GetInputDataObject(1, 0));
+  }
+  const bool compressed = connected && image && vtkCompressedVolume::IsCompressed(image);
+  bool cellData = this->Values.Volume->GetAssociation() == vtkCompressedVolume::CellData;
+  vtkDataArray* array = nullptr;
+  if (image && !compressed)
+  {
+    array = connected ? this->FindArray(image, cellData) : this->FindColorArray(image);
+  }
+  if (!image || (!compressed && !array))
+  {
+    return connected ? this->Report("the colours' volume has no scalars") : false;
+  }
+  if (!this->Take(image, array, cellData, self->ColorComponent, this->Colors))
+  {
+    return false;
+  }
+  const int* values = this->Values.Volume->GetDimensions();
+  const int* colors = this->Colors.Volume->GetDimensions();
+  return std::equal(values, values + 3, colors) ||
+    this->Report("the colours' volume has other dimensions than the one that is rendered: resample "
+                 "it to the same");
+}
+
+// Makes sure that what is compressed is of the present input.
 bool vtkProgressiveIsosurfaceMapper::Internals::UpdateVolume()
 {
   vtkProgressiveIsosurfaceMapper* self = this->Owner;
@@ -263,32 +404,7 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateVolume()
   {
     return this->Report("needs a vtkImageData as input");
   }
-  const bool compressed = vtkCompressedVolume::IsCompressed(image);
-  bool cellData = false;
-  vtkDataArray* array = compressed ? nullptr : this->FindArray(image, cellData);
-  if (!compressed && !array)
-  {
-    return this->Report("the input image has no scalars: select an array that it has");
-  }
-  // of the mapper's own parameters only these make a plain image another volume
-  const SourceKey key = { image, image->GetMTime(), array, array ? array->GetMTime() : 0,
-    array ? self->Rate : 0.0, array ? self->Component : 0 };
-  if (this->Compressed && key == this->Source)
-  {
-    return true;
-  }
-  this->ReleaseInput();
-  vtkSmartPointer<vtkImageData> volume =
-    compressed ? vtkSmartPointer<vtkImageData>(image) : this->Compress(image, array, cellData);
-  if (!this->Volume->Read(volume))
-  {
-    return compressed ? this->Report(this->Volume->GetErrorMessage())
-                      : false; // the filter has told why
-  }
-  this->Compressed = volume;
-  this->Source = key;
-  this->VolumeTime.Modified();
-  return true;
+  return this->UpdateValues(image) && this->UpdateColors(image);
 }
 
 //------------------------------------------------------------------------------
@@ -324,7 +440,12 @@ void vtkProgressiveIsosurfaceMapper::Internals::HandOverVolume()
   if (this->HandOverTime < this->VolumeTime)
   {
     this->HaveScene = false;
-    this->Pipeline.SetVolume(DescribeVolume(this->Volume));
+    PipelineVolume volume = DescribeVolume(this->Values.Volume);
+    if (this->Colors.Image)
+    {
+      volume.Colors = DescribeStream(this->Colors.Volume);
+    }
+    this->Pipeline.SetVolume(volume);
     this->HandOverTime.Modified();
   }
 }
@@ -351,22 +472,39 @@ std::pair<int, vtkMTimeType> vtkProgressiveIsosurfaceMapper::Internals::FindObst
   return found;
 }
 
+// False where the colours of the other volume have changed.
+bool vtkProgressiveIsosurfaceMapper::Internals::UpdatePalette(vtkVolumeProperty* property)
+{
+  vtkScalarsToColors* table = this->Owner->ColorLookupTable ? this->Owner->ColorLookupTable
+                                                            : property->GetRGBTransferFunction();
+  const std::vector<float> palette = this->Colors.Image ? MakePalette(table) : std::vector<float>();
+  const bool same = palette == this->Palette;
+  if (!same || !this->HaveScene)
+  {
+    this->Palette = palette;
+    this->Pipeline.SetPalette(palette);
+  }
+  return same;
+}
+
 // Restarts the image where its hits change. A new look is a matter of the composite alone, but not
 // where layers were blended.
 bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(
   vtkRenderer* renderer, vtkVolume* volume)
 {
-  SceneBlock scene = TranslateScene(renderer, volume, this->Owner, this->Compressed, this->Volume);
+  SceneBlock scene =
+    TranslateScene(renderer, volume, this->Owner, this->Values.Image, this->Values.Volume);
   vtkCamera* camera = renderer->GetActiveCamera();
   vtkMatrix4x4::Invert(camera->GetModelViewTransformMatrix(), this->EyeToWorld);
   const bool translucent = scene.Lighting[1] != 0;
   const auto obstacles =
     translucent ? this->FindObstacles(renderer, volume) : std::pair<int, vtkMTimeType>();
   scene.Lighting[2] = obstacles.first > 0 ? 1 : 0;
+  const bool samePalette = this->UpdatePalette(volume->GetProperty());
   const std::pair<vtkRenderer*, int> view = { renderer, camera->GetLeftEye() };
   this->RendersOfView = view == this->View ? this->RendersOfView + 1 : 0;
   const bool sameHits = this->HaveScene && view == this->View && SameHits(this->Scene, scene) &&
-    (!translucent || (SameLook(this->Scene, scene) && obstacles == this->Obstacles));
+    (!translucent || (SameLook(this->Scene, scene) && samePalette && obstacles == this->Obstacles));
   this->View = view;
   this->Obstacles = obstacles;
   if (sameHits)
@@ -496,7 +634,7 @@ void vtkProgressiveIsosurfaceMapper::Internals::Select(
   vtkIdType cells = 1;
   for (int axis = 0; axis < 3; ++axis)
   {
-    cells *= this->Volume->GetDimensions()[axis] - 1;
+    cells *= this->Values.Volume->GetDimensions()[axis] - 1;
   }
   selector->UpdateMaximumCellId(cells);
   vtkOpenGLState* state = window->GetState();
@@ -581,6 +719,10 @@ void vtkProgressiveIsosurfaceMapper::Internals::FillStatistics()
     }
   }
   statistics->Buffers.emplace_back("scene", sizeof(SceneBlock));
+  if (resources.GetPaletteBytes() > 0)
+  {
+    statistics->Buffers.emplace_back("palette", resources.GetPaletteBytes());
+  }
   statistics->Buffers.emplace_back("staging", resources.GetStagingBytes());
   statistics->Stages.clear();
   statistics->StagesLeftOut.clear();
@@ -612,15 +754,42 @@ vtkStandardNewMacro(vtkProgressiveIsosurfaceMapper);
 vtkProgressiveIsosurfaceMapper::vtkProgressiveIsosurfaceMapper()
   : Impl(new Internals(this))
 {
+  this->SetNumberOfInputPorts(2);
 }
 
-vtkProgressiveIsosurfaceMapper::~vtkProgressiveIsosurfaceMapper() = default;
+vtkProgressiveIsosurfaceMapper::~vtkProgressiveIsosurfaceMapper()
+{
+  this->SetColorArrayName(nullptr);
+  this->SetColorLookupTable(nullptr);
+}
+
+vtkCxxSetObjectMacro(vtkProgressiveIsosurfaceMapper, ColorLookupTable, vtkScalarsToColors);
+
+void vtkProgressiveIsosurfaceMapper::SetColorInputData(vtkImageData* image)
+{
+  this->SetInputDataInternal(1, image);
+}
+
+void vtkProgressiveIsosurfaceMapper::SetColorInputConnection(vtkAlgorithmOutput* output)
+{
+  this->SetInputConnection(1, output);
+}
+
+vtkMTimeType vtkProgressiveIsosurfaceMapper::GetMTime()
+{
+  const vtkMTimeType own = this->Superclass::GetMTime();
+  return this->ColorLookupTable ? std::max(own, this->ColorLookupTable->GetMTime()) : own;
+}
 
 void vtkProgressiveIsosurfaceMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Rate: " << this->Rate << "\n";
   os << indent << "Component: " << this->Component << "\n";
+  os << indent << "ColorArrayName: " << (this->ColorArrayName ? this->ColorArrayName : "(none)")
+     << "\n";
+  os << indent << "ColorComponent: " << this->ColorComponent << "\n";
+  os << indent << "ColorLookupTable: " << this->ColorLookupTable << "\n";
   os << indent << "SpeculationLimit: " << this->SpeculationLimit << "\n";
   os << indent << "MemoryBudget: " << this->MemoryBudget << "\n";
   os << indent << "DecodeWholeVolume: " << this->DecodeWholeVolume << "\n";
@@ -632,9 +801,13 @@ void vtkProgressiveIsosurfaceMapper::PrintSelf(ostream& os, vtkIndent indent)
   this->Statistics->PrintSelf(os, indent.GetNextIndent());
 }
 
-int vtkProgressiveIsosurfaceMapper::FillInputPortInformation(int, vtkInformation* info)
+int vtkProgressiveIsosurfaceMapper::FillInputPortInformation(int port, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  if (port == 1)
+  {
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
   return 1;
 }
 

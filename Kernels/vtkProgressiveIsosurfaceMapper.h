@@ -43,10 +43,12 @@
 
 #include <memory> // for the implementation
 
+class vtkAlgorithmOutput;
 class vtkFloatArray;
 class vtkImageData;
 class vtkProgressiveIsosurfaceStatistics;
 class vtkRenderWindow;
+class vtkScalarsToColors;
 class vtkVolumeProperty;
 
 class VTKPROGISOKERNELS_EXPORT vtkProgressiveIsosurfaceMapper : public vtkVolumeMapper
@@ -72,6 +74,43 @@ public:
   vtkSetClampMacro(Component, int, 0, VTK_INT_MAX);
   vtkGetMacro(Component, int);
   ///@}
+
+  ///@{
+  /**
+   * Another volume that gives the surface its colours: a vtkImageData on port 1, plain or
+   * compressed, with as many samples as the first. It is compressed at Rate where it is plain. Null
+   * or no connection (default): the colours are those of the isovalues.
+   */
+  void SetColorInputData(vtkImageData* image);
+  void SetColorInputConnection(vtkAlgorithmOutput* output);
+  ///@}
+
+  ///@{
+  /**
+   * Array of the (plain) input that gives the surface its colours: of the points or cells, as the
+   * one that is rendered. Null (default) or empty: none. Port 1 goes before it.
+   */
+  vtkSetStringMacro(ColorArrayName);
+  vtkGetStringMacro(ColorArrayName);
+  ///@}
+
+  ///@{
+  /**
+   * Component of the colours' volume. Default 0.
+   */
+  vtkSetClampMacro(ColorComponent, int, 0, VTK_INT_MAX);
+  vtkGetMacro(ColorComponent, int);
+  ///@}
+
+  ///@{
+  /**
+   * Colours of the values of the colours' volume. Null (default): the property's transfer function.
+   */
+  virtual void SetColorLookupTable(vtkScalarsToColors* table);
+  vtkGetObjectMacro(ColorLookupTable, vtkScalarsToColors);
+  ///@}
+
+  vtkMTimeType GetMTime() override;
 
   ///@{
   /**
@@ -200,6 +239,9 @@ protected:
 
   double Rate = 8.0;
   int Component = 0;
+  char* ColorArrayName = nullptr;
+  int ColorComponent = 0;
+  vtkScalarsToColors* ColorLookupTable = nullptr;
   int SpeculationLimit = 64;
   vtkTypeInt64 MemoryBudget = 0;
   bool DecodeWholeVolume = true;
