@@ -68,14 +68,13 @@ vtkTypeInt64 vtkProgressiveIsosurfaceStatistics::GetTotalBytes()
 
 vtkTypeInt64 vtkProgressiveIsosurfaceStatistics::GetCompressedBytes()
 {
+  vtkTypeInt64 bytes = 0;
   for (const auto& buffer : this->Buffers)
   {
-    if (buffer.first == "compressed")
-    {
-      return buffer.second;
-    }
+    bytes +=
+      buffer.first == "compressed" || buffer.first == "compressed_colors" ? buffer.second : 0;
   }
-  return 0;
+  return bytes;
 }
 
 const char* vtkProgressiveIsosurfaceStatistics::GetBufferName(int i)

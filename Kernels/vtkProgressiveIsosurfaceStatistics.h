@@ -62,7 +62,7 @@ public:
 
   ///@{
   /**
-   * Bytes of GPU memory the mapper holds: in total, of the compressed stream, and by named buffer.
+   * Bytes of GPU memory the mapper holds: in total, of the compressed streams, and by named buffer.
    * The buffers of the block cache have names that begin with "cache_".
    */
   vtkTypeInt64 GetTotalBytes();

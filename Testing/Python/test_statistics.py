@@ -8,6 +8,7 @@ from oracle.caster import Camera
 from progiso.statistics import PASS_KEYS
 from scenes import CACHED, Scene, orbit
 from support import make_image, marschner_lobb, metadata, noise, reference_volume, stream_of
+from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction, vtkPlane
 
 
 @pytest.fixture(scope="module")
@@ -167,6 +168,57 @@ def test_speculation_takes_no_memory(volume):
     with_it, stages = needs(volume, **CACHED)
     without, same_stages = needs(volume, SpeculationLimit=1, **CACHED)
     assert with_it == without and stages == same_stages
+
+
+def feature(volume, change, isovalues=((0.5, 1.0),), **settings):
+    """Buffers and stages of a lit scene with isovalues of these opacities, after `change` of the mapper."""
+    image, camera = volume
+    scene = Scene(image, 0.5, camera, SIZE, lit=True, **settings)
+    opacities = vtkPiecewiseFunction()
+    for number, (isovalue, opacity) in enumerate(isovalues):
+        scene.volume.GetProperty().GetIsoSurfaceValues().SetValue(number, isovalue)
+        opacities.AddPoint(isovalue, opacity)
+    scene.volume.GetProperty().SetScalarOpacity(opacities)
+    change(scene.mapper)
+    scene.render()
+    statistics = scene.statistics()
+    return statistics["memory"]["buffers"], set(statistics["stages"])
+
+
+def add_clipping_plane(mapper):
+    plane = vtkPlane()
+    plane.SetOrigin(50, 45, 55)
+    mapper.AddClippingPlane(plane)
+
+
+def crop(mapper):
+    mapper.SetCroppingRegionPlanes(20, 60, 20, 60, 20, 60)
+    mapper.CroppingOn()
+
+
+@pytest.mark.parametrize("settings", [{}, CACHED])
+def test_what_features_take(volume, settings):
+    """Clipping and cropping take nothing, a second isovalue 4 bytes a pixel, translucency 20 without a cache."""
+    plain, stages = feature(volume, lambda mapper: None, **settings)
+    assert feature(volume, add_clipping_plane, **settings) == (plain, stages)
+    assert feature(volume, crop, **settings)[0] == plain
+    two, _ = feature(volume, lambda mapper: None, ((0.5, 1.0), (1.0, 1.0)), **settings)
+    assert two == {**plain, "hits": 12 * PIXELS}
+    seen_through, _ = feature(volume, lambda mapper: None, ((0.5, 0.5),), **settings)
+    assert "normals" not in seen_through
+    assert seen_through["layers"] == 8 * PIXELS and seen_through["rays"] == 12 * PIXELS
+
+
+@pytest.mark.parametrize("settings", [{}, CACHED])
+def test_what_colours_take(volume, settings):
+    """As much again for the decoded samples, 4 bytes a pixel and the palette."""
+    image, _ = volume
+    plain, stages = feature(volume, lambda mapper: None, **settings)
+    coloured, more = feature(volume, lambda mapper: mapper.SetColorInputData(image), **settings)
+    assert coloured["hits"] == 12 * PIXELS and coloured["palette"] == 16 * 257
+    assert coloured["cache_values"] == 2 * plain["cache_values"]
+    assert more - stages == {"DecodeColors"}
+    assert ("compressed_colors" in coloured) == bool(settings)
 
 
 def test_nothing_to_see():
