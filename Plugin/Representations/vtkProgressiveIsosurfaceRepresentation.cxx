@@ -8,6 +8,7 @@
 #include "vtkCompressedVolume.h"
 #include "vtkContourValues.h"
 #include "vtkDataArray.h"
+#include "vtkDiscretizableColorTransferFunction.h"
 #include "vtkExtractVOI.h"
 #include "vtkGhostCellsGenerator.h"
 #include "vtkImageData.h"
@@ -20,12 +21,15 @@
 #include "vtkPVLODVolume.h"
 #include "vtkPVRenderView.h"
 #include "vtkPVView.h"
+#include "vtkPiecewiseFunction.h"
 #include "vtkPointData.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkProgressiveIsosurfaceMapper.h"
 #include "vtkProgressiveIsosurfaceStatistics.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkVolumeProperty.h"
+
+#include <algorithm>
 
 namespace
 {
@@ -124,6 +128,7 @@ vtkProgressiveIsosurfaceRepresentation::vtkProgressiveIsosurfaceRepresentation()
   this->Actor->SetProperty(this->Property);
   this->Actor->SetLODMapper(this->OutlineMapper);
   this->Property->ShadeOn();
+  this->Property->SetScalarOpacity(this->SurfaceOpacity);
   this->SetDiffuseColor(1.0, 1.0, 1.0);
 }
 
@@ -354,8 +359,31 @@ void vtkProgressiveIsosurfaceRepresentation::UpdateMapperParameters()
       : VTK_SCALAR_MODE_USE_POINT_FIELD_DATA);
   const bool mapped = this->ColorMap && this->IsColoredByDrawnArray();
   this->Property->SetColor(mapped ? this->ColorMap.Get() : this->SolidColor.Get());
+  this->UpdateOpacity(mapped);
   this->Actor->SetMapper(this->VolumeMapper);
   this->Actor->SetVisibility(this->CanDraw);
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::UpdateOpacity(bool mapped)
+{
+  auto* map = vtkDiscretizableColorTransferFunction::SafeDownCast(this->ColorMap);
+  vtkPiecewiseFunction* opacities =
+    mapped && map && map->GetEnableOpacityMapping() ? map->GetScalarOpacityFunction() : nullptr;
+  vtkContourValues* values = this->Property->GetIsoSurfaceValues();
+  vtkNew<vtkPiecewiseFunction> wanted;
+  for (int i = 0; i < values->GetNumberOfContours(); ++i)
+  {
+    const double value = values->GetValue(i);
+    wanted->AddPoint(value, this->Opacity * (opacities ? opacities->GetValue(value) : 1.0));
+  }
+  const int nodes = wanted->GetSize();
+  if (nodes != this->SurfaceOpacity->GetSize() ||
+    !std::equal(wanted->GetDataPointer(), wanted->GetDataPointer() + 2 * nodes,
+      this->SurfaceOpacity->GetDataPointer()))
+  {
+    this->SurfaceOpacity->DeepCopy(wanted);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -378,13 +406,22 @@ void vtkProgressiveIsosurfaceRepresentation::SetIsosurfaceComponent(int componen
 }
 
 //------------------------------------------------------------------------------
-void vtkProgressiveIsosurfaceRepresentation::SetIsovalue(double value)
+void vtkProgressiveIsosurfaceRepresentation::SetNumberOfIsovalues(int number)
 {
   vtkContourValues* values = this->Property->GetIsoSurfaceValues();
-  if (values->GetNumberOfContours() != 1 || values->GetValue(0) != value)
+  if (values->GetNumberOfContours() != number)
   {
-    values->SetNumberOfContours(1);
-    values->SetValue(0, value);
+    values->SetNumberOfContours(number);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetIsovalue(int index, double value)
+{
+  vtkContourValues* values = this->Property->GetIsoSurfaceValues();
+  if (index >= values->GetNumberOfContours() || values->GetValue(index) != value)
+  {
+    values->SetValue(index, value);
   }
 }
 
@@ -394,6 +431,12 @@ void vtkProgressiveIsosurfaceRepresentation::SetDiffuseColor(double red, double 
   // One node: the same colour at every isovalue.
   this->SolidColor->RemoveAllPoints();
   this->SolidColor->AddRGBPoint(0.0, red, green, blue);
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetOpacity(double opacity)
+{
+  this->Opacity = opacity;
 }
 
 //------------------------------------------------------------------------------
@@ -418,36 +461,6 @@ void vtkProgressiveIsosurfaceRepresentation::SetSpeculation(bool on)
 void vtkProgressiveIsosurfaceRepresentation::SetMemoryBudget(int mebibytes)
 {
   this->GetIsosurfaceMapper()->SetMemoryBudget(static_cast<vtkTypeInt64>(mebibytes) << 20);
-}
-
-//------------------------------------------------------------------------------
-int vtkProgressiveIsosurfaceRepresentation::GetNumberOfPasses()
-{
-  return this->GetStatistics()->GetNumberOfPasses();
-}
-
-//------------------------------------------------------------------------------
-double vtkProgressiveIsosurfaceRepresentation::GetCompletedFraction()
-{
-  return this->GetIsosurfaceMapper()->GetCompletedFraction();
-}
-
-//------------------------------------------------------------------------------
-double vtkProgressiveIsosurfaceRepresentation::GetTotalMilliseconds()
-{
-  return this->GetStatistics()->GetTotalMilliseconds();
-}
-
-//------------------------------------------------------------------------------
-double vtkProgressiveIsosurfaceRepresentation::GetGPUBytes()
-{
-  return static_cast<double>(this->GetStatistics()->GetTotalBytes());
-}
-
-//------------------------------------------------------------------------------
-double vtkProgressiveIsosurfaceRepresentation::GetCompressedBytes()
-{
-  return static_cast<double>(this->GetStatistics()->GetCompressedBytes());
 }
 
 //------------------------------------------------------------------------------

@@ -51,11 +51,17 @@ public:
   /// The component of that array.
   void SetIsosurfaceComponent(int component);
 
-  /// The isovalue, in the units of the array.
-  void SetIsovalue(double value);
+  ///@{
+  /// The isovalues, in the units of the array; they become those of the volume property.
+  void SetNumberOfIsovalues(int number);
+  void SetIsovalue(int index, double value);
+  ///@}
 
   /// Colour of the surface where no colour map applies.
   void SetDiffuseColor(double red, double green, double blue);
+
+  /// Opacity of the surface, 0 … 1. A colour map that maps opacities has a say too.
+  void SetOpacity(double opacity);
 
   /// Colour map, used when the representation is coloured by the isosurface array.
   void SetColor(vtkColorTransferFunction* colorMap);
@@ -71,13 +77,10 @@ public:
   ///@}
 
   ///@{
-  /// Statistics of the last image, for the information properties (bytes as double: ParaView's
-  /// panel shows no 64-bit integers).
-  int GetNumberOfPasses();
-  double GetCompletedFraction();
-  double GetTotalMilliseconds();
-  double GetGPUBytes();
-  double GetCompressedBytes();
+  /// What draws the surface on this process, and the statistics of its last image. See
+  /// vtkPVIsosurfaceInformation for those of all processes.
+  vtkProgressiveIsosurfaceMapper* GetIsosurfaceMapper();
+  vtkProgressiveIsosurfaceStatistics* GetStatistics();
   ///@}
 
 protected:
@@ -98,9 +101,6 @@ private:
     int Association = 0; // vtkDataObject::FIELD_ASSOCIATION_POINTS
     std::string Name;
   };
-
-  vtkProgressiveIsosurfaceMapper* GetIsosurfaceMapper();
-  vtkProgressiveIsosurfaceStatistics* GetStatistics();
 
   ///@{
   /// Sets DrawnArray from the input; false after an error that says why nothing can be drawn.
@@ -124,10 +124,15 @@ private:
   /// True when the representation is coloured by the array that is drawn.
   bool IsColoredByDrawnArray();
 
+  /// Makes the property's opacity function; one node an isovalue.
+  void UpdateOpacity(bool mapped);
+
   ArraySelection IsosurfaceArray; ///< as chosen by the user, its name empty for the active scalars
   ArraySelection DrawnArray;      ///< the array of the present input
   vtkSmartPointer<vtkColorTransferFunction> ColorMap;
   vtkNew<vtkColorTransferFunction> SolidColor;
+  double Opacity = 1.0;
+  vtkNew<vtkPiecewiseFunction> SurfaceOpacity;
   bool CanDraw = false;
 
   vtkProgressiveIsosurfaceRepresentation(const vtkProgressiveIsosurfaceRepresentation&) = delete;

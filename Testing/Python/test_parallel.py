@@ -59,6 +59,11 @@ def test_seams(shown, processes, case):
     assert differing.mean() <= tolerances.PROCESSES_PIXELS, f"{differing.sum()} pixels differ"
 
 
+def test_server(build, tmp_path):  # noqa: F811
+    """The server's processes draw; the client shows the same picture as without them, and all figures."""
+    under_x("pvpython", HERE / "paraview_scripts" / "remote.py", build, tmp_path, **MPI)
+
+
 def test_compressed_before_or_by_the_mapper(shown):
     """A piece is compressed to the same blocks by the filter and by the mapper."""
     for plain, compressed in (("plain", "compressed"), ("cells", "cells-compressed")):

@@ -21,7 +21,8 @@ def run(name, build, folder):  # noqa: F811
 
 
 @pytest.mark.parametrize(
-    "name", ["show_plain", "show_compressed", "opaque", "zfp_files", "interactive", "errors", "cell_data"]
+    "name",
+    ["show_plain", "show_compressed", "opaque", "zfp_files", "interactive", "errors", "cell_data", "panel", "trace"],
 )
 def test_script(name, build, tmp_path):  # noqa: F811
     run(name, build, tmp_path)

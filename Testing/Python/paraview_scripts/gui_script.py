@@ -18,7 +18,7 @@ wavelet.UpdatePipeline()
 compressed = simple.ZFPCompress(Input=wavelet, Rate=8)
 display = simple.Show(compressed, view)
 display.SetRepresentationType("Progressive Isosurface")
-display.Isovalue = 150.0
+display.Isovalues = [150.0]
 display.DiffuseColor = [0.94, 0.86, 0.71]
 simple.SetActiveSource(compressed)
 camera = view.GetActiveCamera()

@@ -14,7 +14,7 @@ camera.SetViewUp(0, 1, 0)
 camera.SetClippingRange(1, 200)
 
 EXTENT = [-23, 25, -24, 24, -20, 29]  # no multiple of four anywhere, also not where it is cut
-look = {"Isovalue": 150.0, "DiffuseColor": [0.9, 0.85, 0.7]}
+look = {"Isovalues": [150.0], "DiffuseColor": [0.9, 0.85, 0.7]}
 
 
 def shoot(source, name, **properties):
