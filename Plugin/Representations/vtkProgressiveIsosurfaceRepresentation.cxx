@@ -114,6 +114,18 @@ void FindWholeExtent(const int own[6], int whole[6])
   }
 }
 
+// The image without its ghost cells and arrays, which a compressed volume has none of.
+vtkSmartPointer<vtkImageData> WithoutGhosts(vtkImageData* image)
+{
+  int extent[6];
+  vtkCompressedVolume::GetOwnExtent(image, extent);
+  auto own = vtkSmartPointer<vtkImageData>::New();
+  own->CopyStructure(image);
+  own->SetExtent(extent);
+  own->GetFieldData()->PassData(image->GetFieldData());
+  return own;
+}
+
 constexpr int SPECULATION_ON = 64;
 constexpr int SPECULATION_OFF = 1;
 }
@@ -225,10 +237,7 @@ vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::MakePiece(
 vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::MakeCompressedPiece(
   vtkImageData* image, const int own[6])
 {
-  auto piece = vtkSmartPointer<vtkImageData>::New();
-  piece->CopyStructure(image);
-  piece->SetExtent(const_cast<int*>(own));
-  piece->GetFieldData()->PassData(image->GetFieldData());
+  vtkSmartPointer<vtkImageData> piece = WithoutGhosts(image);
   vtkNew<vtkCompressedVolume> volume;
   if (this->CanDraw && piece->GetNumberOfPoints() > 0 && volume->Read(piece))
   {
@@ -299,7 +308,12 @@ bool vtkProgressiveIsosurfaceRepresentation::FindDrawnArray(vtkImageData* image)
 bool vtkProgressiveIsosurfaceRepresentation::FindCompressedArray(vtkImageData* image)
 {
   vtkNew<vtkCompressedVolume> volume;
-  if (!volume->Read(image))
+  vtkSmartPointer<vtkImageData> own = WithoutGhosts(image);
+  if (own->GetNumberOfPoints() == 0)
+  {
+    return false; // there is more than one process, and this one has no piece
+  }
+  if (!volume->Read(own))
   {
     vtkErrorMacro("Progressive Isosurface: " << volume->GetErrorMessage());
     return false;

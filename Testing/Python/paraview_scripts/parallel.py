@@ -1,7 +1,9 @@
 """Run by pvbatch on several processes: the same pictures whatever their number. Every process has a piece of the image, and draws that."""
 
+import math
+
 import numpy
-from common import BUILD, OUTPUT, finish, load_plugin, make_view, screenshot, show_isosurface
+from common import BUILD, OUTPUT, finish, load_plugin, make_view, middle, screenshot, show_isosurface
 from paraview import servermanager, simple
 
 assert BUILD.is_dir()
@@ -29,6 +31,8 @@ display = shoot(wavelet, "plain", CompressionRate=4)
 processes = servermanager.ActiveConnection.GetNumberOfDataPartitions()
 
 compressed = simple.ZFPCompress(Input=wavelet, Rate=4)
+first = list(show_isosurface(compressed, view).Isovalues)
+assert math.isclose(first[0], middle(wavelet.PointData["RTData"].GetRange()), rel_tol=1e-6), "range of all pieces"
 shoot(compressed, "compressed")
 decompressed = simple.ZFPDecompress(Input=compressed)
 shoot(decompressed, "decompressed", CompressionRate=16)
