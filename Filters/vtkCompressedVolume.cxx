@@ -429,11 +429,11 @@ void vtkCompressedVolume::Write(vtkImageData* image) const
 }
 
 //------------------------------------------------------------------------------
-void vtkCompressedVolume::Remove(vtkImageData* image)
+void vtkCompressedVolume::Remove(vtkDataObject* object)
 {
   for (const char* name : AllNames)
   {
-    image->GetFieldData()->RemoveArray(name);
+    object->GetFieldData()->RemoveArray(name);
   }
 }
 

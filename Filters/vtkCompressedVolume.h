@@ -130,9 +130,10 @@ public:
   void Crop(const int own[6]);
 
   /**
-   * Remove the arrays that Write() stores from an image's field data.
+   * Remove the arrays that Write() stores from the field data of an image, or of what was made of
+   * one.
    */
-  static void Remove(vtkImageData* image);
+  static void Remove(vtkDataObject* object);
 
   /**
    * What the last Read() objected to; empty after a successful one.

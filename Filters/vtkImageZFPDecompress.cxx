@@ -16,26 +16,7 @@
 #include "vtkUnsignedCharArray.h"
 #include "vtkZFPBlocks.h"
 
-#include <algorithm>
-#include <cstdint>
-
 vtkStandardNewMacro(vtkImageZFPDecompress);
-
-namespace
-{
-//------------------------------------------------------------------------------
-// The stream, or a copy where its memory (someone's NumPy array) is not aligned to 64-bit words.
-vtkSmartPointer<vtkUnsignedCharArray> AlignedStream(vtkUnsignedCharArray* stream)
-{
-  if (reinterpret_cast<std::uintptr_t>(stream->GetPointer(0)) % sizeof(vtkTypeUInt64) == 0)
-  {
-    return stream;
-  }
-  auto copy = vtkSmartPointer<vtkUnsignedCharArray>::New();
-  copy->DeepCopy(stream);
-  return copy;
-}
-}
 
 //------------------------------------------------------------------------------
 int vtkImageZFPDecompress::RequestInformation(
@@ -96,7 +77,7 @@ int vtkImageZFPDecompress::RequestData(
   samples->SetName(volume->GetArrayName().c_str());
   samples->SetNumberOfValues(static_cast<vtkIdType>(dims[0]) * dims[1] * dims[2]);
 
-  const auto stream = AlignedStream(volume->GetStream());
+  const auto stream = vtkZFPBlocks::Align(volume->GetStream());
   vtkZFPBlocks blocks(dims, volume->GetBlockBits(), stream->GetPointer(0), this->NumberOfThreads);
   if (!blocks.Decode(samples->GetPointer(0), vtkZFPBlocks::ReportOf(this)))
   {

@@ -6,6 +6,7 @@
 #include "vtkArrayDispatch.h"
 #include "vtkDataArray.h"
 #include "vtkDataArrayRange.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <omp.h>
 #include <zfp.h>
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <sstream>
 
 namespace
@@ -146,6 +148,18 @@ vtkZFPBlocks::vtkZFPBlocks(const int dims[3], int blockBits, void* words, int th
     this->Dimensions[axis] = dims[axis];
     this->Blocks[axis] = (this->Dimensions[axis] + 3) / 4;
   }
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkUnsignedCharArray> vtkZFPBlocks::Align(vtkUnsignedCharArray* stream)
+{
+  if (reinterpret_cast<std::uintptr_t>(stream->GetPointer(0)) % sizeof(vtkTypeUInt64) == 0)
+  {
+    return stream;
+  }
+  auto copy = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  copy->DeepCopy(stream);
+  return copy;
 }
 
 //------------------------------------------------------------------------------
@@ -381,6 +395,27 @@ bool vtkZFPBlocks::Decode(float* samples, const Report& report)
           stream, target, block.Size[0], block.Size[1], block.Size[2], 1, row, slice);
       }
     });
+}
+
+//------------------------------------------------------------------------------
+void vtkZFPBlocks::DecodeBox(const int first[3], const int last[3], float* samples) const
+{
+  Codec codec(this->Words, this->BlockBits);
+  const vtkTypeInt64 row = 4 * static_cast<vtkTypeInt64>(last[0] - first[0]);
+  const vtkTypeInt64 slice = 4 * row * (last[1] - first[1]);
+  for (vtkTypeInt64 z = first[2]; z < last[2]; ++z)
+  {
+    for (vtkTypeInt64 y = first[1]; y < last[1]; ++y)
+    {
+      const vtkTypeInt64 index = first[0] + this->Blocks[0] * (y + this->Blocks[1] * z);
+      stream_rseek(codec.Bits, static_cast<bitstream_offset>(index) * this->BlockBits);
+      float* const target = samples + 4 * ((z - first[2]) * slice + (y - first[1]) * row);
+      for (int x = 0; x < last[0] - first[0]; ++x)
+      {
+        zfp_decode_block_strided_float_3(codec.Stream, target + 4 * x, 1, row, slice);
+      }
+    }
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -15,6 +15,7 @@
 #ifndef vtkZFPBlocks_h
 #define vtkZFPBlocks_h
 
+#include "vtkSmartPointer.h" // for the stream
 #include "vtkType.h"
 
 #include <functional> // for progress
@@ -23,6 +24,7 @@
 
 class vtkAlgorithm;
 class vtkDataArray;
+class vtkUnsignedCharArray;
 
 class vtkZFPBlocks
 {
@@ -58,6 +60,11 @@ public:
   vtkZFPBlocks(const int dims[3], int blockBits, void* words, int threads);
 
   /**
+   * A stream, or a copy where its memory (someone's NumPy array) is not aligned to 64-bit words.
+   */
+  static vtkSmartPointer<vtkUnsignedCharArray> Align(vtkUnsignedCharArray* stream);
+
+  /**
    * Called now and then, by the calling thread, with the fraction done; false stops the work.
    */
   using Report = std::function<bool(double)>;
@@ -87,6 +94,13 @@ public:
    * Decode all into an array of dims[0]*dims[1]*dims[2] floats. False when stopped.
    */
   bool Decode(float* samples, const Report& report);
+
+  /**
+   * Decode the blocks [first, last) along each axis, in the calling thread, into a box of
+   * 4*(last-first) samples per axis, x fastest. Samples beyond the volume's upper borders are zfp's
+   * padding. Threads may share this object.
+   */
+  void DecodeBox(const int first[3], const int last[3], float* samples) const;
 
   /**
    * Decode all only to summarise the samples. False when stopped.

@@ -12,10 +12,21 @@ ivec3 CellAt(Ray ray, ivec3 block, double t)
   return entry - (1 - ray.Step) / 2 + crossed * ray.Step;
 }
 
-float Excess(uint at)
+vec4 LoadSamples(uvec4 at)
 {
-  precise float value = (uintBitsToFloat(cacheValues[at]) - scene.Isovalue.x) - scene.Isovalue.y;
-  return value;
+  return uintBitsToFloat(uvec4(cacheValues[at.x], cacheValues[at.y], cacheValues[at.z], cacheValues[at.w]));
+}
+
+vec4 Excess(vec4 values, int surface)
+{
+  vec4 isovalue = scene.Isovalues[surface];
+  precise vec4 excess = (values - isovalue.x) - isovalue.y;
+  return excess;
+}
+
+Corners Excess(Corners values, int surface)
+{
+  return Corners(Excess(values.Low, surface), Excess(values.High, surface));
 }
 
 // Where the corners of a cell are, on its lower and its upper z face, x fastest; with a cache, of a cell of the block
@@ -37,14 +48,33 @@ void FindCorners(ivec3 cell, out uvec4 low, out uvec4 high)
 #endif
 }
 
+// With several isovalues the samples themselves, else what they are above the isovalue.
 Corners LoadCorners(ivec3 cell)
 {
   uvec4 low, high;
   FindCorners(cell, low, high);
-  Corners w;
-  w.Low = vec4(Excess(low.x), Excess(low.y), Excess(low.z), Excess(low.w));
-  w.High = vec4(Excess(high.x), Excess(high.y), Excess(high.z), Excess(high.w));
-  return w;
+  Corners values = Corners(LoadSamples(low), LoadSamples(high));
+#ifdef SEVERAL_ISOVALUES
+  return values;
+#else
+  return Excess(values, 0);
+#endif
+}
+
+bool HoldsSurface(Corners w)
+{
+#ifdef SEVERAL_ISOVALUES
+  for (int i = 0; i < scene.Surface.x; ++i)
+  {
+    if (Straddle(Excess(w, i)))
+    {
+      return true;
+    }
+  }
+  return false;
+#else
+  return Straddle(w);
+#endif
 }
 
 // Coordinates in the cell's unit cube at parameter t; exact on the faces that the ray is crossing.
@@ -56,23 +86,76 @@ vec3 LocalCoordinates(Ray ray, ivec3 cell, double t, bvec3 onFace, bool leaving)
   return mix(u, face, onFace);
 }
 
+double HitBetween(double t0, double t1, float s)
+{
+  precise double t = t0 + double(s) * (t1 - t0);
+  return t;
+}
+
+// Hits have an order along the ray: by their keys, and of one key by their surfaces.
+bool Before(Hit a, Hit b)
+{
+  return a.Key < b.Key || (a.Key == b.Key && a.Surface < b.Surface);
+}
+
+#ifdef MANY_CROSSINGS
+Hit passed = MISS; // the hit that the ray has left behind
+
+// Not every crossing is a hit: it may lie in a region that is not drawn, or not be behind the last one.
+Hit Crossing(Ray ray, double t0, double t1, float s, int surface)
+{
+  double t = HitBetween(t0, t1, s);
+  Hit hit = Hit(HitKey(ray, t), surface);
+  bool counts = s >= 0.0;
+#ifdef TRANSLUCENT
+  counts = counts && (passed.Key == NO_HIT || Before(passed, hit));
+#endif
+#ifdef CROPPED
+  counts = counts && Drawn(CroppingRegion(ray.Origin + t * ray.Direction));
+#endif
+  return counts ? hit : MISS;
+}
+#endif
+
+// First hit of a surface between parameters t0 and t1, along which the interpolant is this cubic.
+Hit FirstHit(Ray ray, vec4 cubic, double t0, double t1, int surface)
+{
+#ifdef MANY_CROSSINGS
+  vec3 s = Transitions(cubic);
+  Hit hit = Crossing(ray, t0, t1, s.x, surface);
+  hit = hit.Key == NO_HIT ? Crossing(ray, t0, t1, s.y, surface) : hit;
+  return hit.Key == NO_HIT ? Crossing(ray, t0, t1, s.z, surface) : hit;
+#else
+  float s = FirstTransition(cubic);
+  return s >= 0.0 ? Hit(HitKey(ray, HitBetween(t0, t1, s)), surface) : MISS;
+#endif
+}
+
 // First hit of the ray in the cell between parameters t0 and t1; false if there is none.
-bool IntersectCell(Ray ray, ivec3 cell, Corners w, double t0, double t1, dvec3 exits, out double t)
+bool IntersectCell(Ray ray, ivec3 cell, Corners w, double t0, double t1, dvec3 exits, out Hit hit)
 {
   bvec3 entering = equal(PlanesT(ray, EntryPlanes(ray, cell, 1)), dvec3(t0));
   bvec3 leaving = equal(exits, dvec3(t1));
   vec3 u0 = LocalCoordinates(ray, cell, t0, entering, false);
   vec3 u1 = LocalCoordinates(ray, cell, t1, leaving, true);
-  float s = FirstTransition(CubicAlong(w, u0, u1));
-  precise double hit = t0 + double(s) * (t1 - t0);
-  t = hit;
-  return s >= 0.0;
+#ifdef SEVERAL_ISOVALUES
+  hit = MISS;
+  for (int i = 0; i < scene.Surface.x; ++i)
+  {
+    Hit other = FirstHit(ray, CubicAlong(Excess(w, i), u0, u1), t0, t1, i);
+    hit = Before(other, hit) ? other : hit;
+  }
+#else
+  hit = FirstHit(ray, CubicAlong(w, u0, u1), t0, t1, 0);
+#endif
+  return hit.Key != NO_HIT;
 }
 
 // First hit of the ray in the block between parameters t0 and end; false if there is none. The walk to the next
 // cell that the surface crosses is a loop of its own, so that the lanes of a group meet again for the costly part.
-bool IntersectBlock(Ray ray, ivec3 block, double t0, double end, out double t)
+bool IntersectBlock(Ray ray, ivec3 block, double t0, double end, out Hit hit)
 {
+  hit = MISS;
   ivec3 cell = CellAt(ray, block, t0);
   for (int tested = 0; tested < 16; ++tested) // a ray crosses at most 10 cells of 4^3
   {
@@ -85,7 +168,7 @@ bool IntersectBlock(Ray ray, ivec3 block, double t0, double end, out double t)
       exits = PlanesT(ray, ExitPlanes(ray, cell, 1));
       t1 = min(SmallestOf(exits), end);
       w = LoadCorners(cell);
-      crossed = Straddle(w);
+      crossed = HoldsSurface(w);
       if (crossed || t1 >= end)
       {
         break;
@@ -93,7 +176,7 @@ bool IntersectBlock(Ray ray, ivec3 block, double t0, double end, out double t)
       cell += ivec3(lessThanEqual(exits, dvec3(t1))) * ray.Step;
       t0 = t1;
     }
-    if (crossed && IntersectCell(ray, cell, w, t0, t1, exits, t))
+    if (crossed && IntersectCell(ray, cell, w, t0, t1, exits, hit))
     {
       return true;
     }

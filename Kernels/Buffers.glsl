@@ -44,7 +44,9 @@ layout(std430, binding = BINDING_CONTROL) buffer Control
   uint EvictByPages; // 1: a page counts as one unit; 0: as many as it has slots
   uint Evicted;      // units of the threshold age freed so far
   uint RefusedBefore; // blocks for which the pass before had no room
-  uint ControlPad;
+  uint Again;         // translucent hits of the last pass: their rays go on, where they do
+  uint GoingOn;       // of this pass, rays that go on behind such a hit
+  uint ControlPad0, ControlPad1, ControlPad2;
   Dispatch CastGroups;
   Dispatch FewGroups; // where few rays are left, of CastFewRays instead
   Dispatch NormalGroups;
@@ -85,16 +87,18 @@ layout(std430, binding = BINDING_MACROCELLS) buffer Macrocells { Macrocell macro
 
 // ---- the image
 #ifdef BINDING_HITS
+// What a pixel's ray has met, see Hits.glsl.
 layout(std430, binding = BINDING_HITS) buffer Hits { uint hits[]; };
 #endif
-#ifdef BINDING_DEPTHS
-layout(std430, binding = BINDING_DEPTHS) buffer Depths { float depths[]; }; // the hits' parameters t
+#ifdef BINDING_LAYERS
+// What the layers of a translucent image add up to, front to back: colour times opacity, opacity; 4 x 16 bits.
+layout(std430, binding = BINDING_LAYERS) buffer Layers { uvec2 layers[]; };
 #endif
 #ifdef BINDING_NORMALS
 layout(std430, binding = BINDING_NORMALS) buffer Normals { uint normals[]; };
 #endif
 #ifdef BINDING_RAYS
-// For every pixel the block that its live ray waits for; then two lists, in turn, of the pixels of live rays, and from
+// For every pixel the block that its live ray waits for or goes on in; then two lists, in turn, of the pixels of live rays, and from
 // their ends on of hits without a normal.
 layout(std430, binding = BINDING_RAYS) buffer Rays { uint rays[]; };
 #endif

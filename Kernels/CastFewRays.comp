@@ -1,6 +1,6 @@
 // CastRays for the last rays of an image: a work group a ray, whose lanes take the next blocks along it, one each. The
 // slots of the rays that are done serve those that are left (section 4).
-// In: Macrocells, CacheMap, CacheValues, Rays. Out: Hits, Depths, Rays, CacheMap (stamps), Control.
+// In: Macrocells, CacheMap, CacheValues, Rays. Out: Hits, Rays, CacheMap (stamps), Control.
 
 #define GROUP 32u
 
@@ -45,6 +45,9 @@ bool CastRay(uint pixel)
   uint lane = gl_LocalInvocationIndex;
   Ray ray = CameraRay(pixel);
   ivec3 next = BlockCoordinates(rays[pixel]);
+#ifdef TRANSLUCENT
+  passed = HitOf(pixel);
+#endif
   GridCursor at = OutsideGrid();
   bool inside = true;
   while (inside)
@@ -59,23 +62,24 @@ bool CastRay(uint pixel)
       atomicMin(firstMissing, lane);
     }
     barrier();
-    uint key = NO_HIT;
-    double t;
+    Hit hit = MISS;
     if (took && lane < firstMissing)
     {
       UseBlocks(block, reach);
       ++pairs;
-      if (IntersectBlock(ray, block, entry, end, t))
+      if (IntersectBlock(ray, block, entry, end, hit))
       {
-        key = HitKey(ray, t);
         atomicMin(firstHit, lane);
       }
     }
     barrier();
     if (firstHit == lane)
     {
-      KeepHit(ray, pixel, key);
-#ifdef HAS_NORMALS
+      KeepHit(pixel, hit, float(HitT(ray, hit.Key)));
+#ifdef TRANSLUCENT
+      rays[pixel] = BlockIndex(block);
+#endif
+#ifdef HIT_LIST
       rays[NextList(FromEnd(ReserveUnlit(1u)))] = pixel;
 #endif
     }
@@ -105,7 +109,11 @@ void main()
   {
     return;
   }
-  uint pixel = rays[ThisList(index)];
+  uint pixel = BegunPixel(index);
+  if (pixel == NONE)
+  {
+    return;
+  }
   bool behind = BehindFrontier(pixel);
   bool live = behind || CastRay(pixel);
   if (gl_LocalInvocationIndex == 0u)

@@ -2,7 +2,7 @@
 // range holds the isovalue, in their order along the ray, and is intersected with them as long as they are in the cache.
 // At the first that is not it waits for the next pass. So a ray tests no block behind its hit, and the first hit it
 // finds is the nearest.
-// In: Macrocells, CacheMap, CacheValues, Rays. Out: Hits, Depths, Rays, CacheMap (stamps), Control.
+// In: Macrocells, CacheMap, CacheValues, Rays. Out: Hits, Rays, CacheMap (stamps), Control.
 
 #define GROUP 32u
 
@@ -20,9 +20,9 @@
 layout(local_size_x = 32) in; // GROUP
 
 // Walks from `block` to the first hit; true where the ray has to wait for the block that it returns.
-bool FindHit(Ray ray, inout ivec3 block, out uint key)
+bool FindHit(Ray ray, inout ivec3 block, out Hit hit)
 {
-  key = NO_HIT;
+  hit = MISS;
   GridCursor at = OutsideGrid();
   while (FindActiveBlock(ray, block, at))
   {
@@ -35,10 +35,8 @@ bool FindHit(Ray ray, inout ivec3 block, out uint key)
     }
     UseBlocks(block, reach);
     ++pairs;
-    double t;
-    if (IntersectBlock(ray, block, entry, end, t))
+    if (IntersectBlock(ray, block, entry, end, hit))
     {
-      key = HitKey(ray, t);
       return false;
     }
     if (!NextBlock(ray, block))
@@ -66,19 +64,28 @@ uint CastRay(uint pixel, bool fresh)
 #else
   ivec3 block = FirstBlock(ray);
 #endif
-  uint key;
-  bool waits = FindHit(ray, block, key);
-  if (key != NO_HIT)
+#ifdef TRANSLUCENT
+  passed = HitOf(pixel);
+#endif
+  Hit hit;
+  bool waits = FindHit(ray, block, hit);
+  bool struck = hit.Key != NO_HIT;
+  if (struck)
   {
-    KeepHit(ray, pixel, key);
+    KeepHit(pixel, hit, float(HitT(ray, hit.Key)));
   }
+#ifdef TRANSLUCENT
+  bool goesOn = waits || struck;
+#else
+  bool goesOn = waits;
+#endif
 #ifdef HAS_RAYS
-  if (waits)
+  if (goesOn)
   {
     rays[pixel] = BlockIndex(block);
   }
 #endif
-  return waits ? WAITS : key != NO_HIT ? HIT : DONE;
+  return waits ? WAITS : struck ? HIT : DONE;
 }
 
 #ifdef HAS_RAYS
@@ -104,7 +111,7 @@ void KeepRays(uint state, uint pixel)
     at = atomicAdd(groupLive, 1u);
     atomicMin(groupFirst, TileOrderOf(pixel));
   }
-#ifdef HAS_NORMALS
+#ifdef HIT_LIST
   at = state == HIT ? atomicAdd(groupHits, 1u) : at;
 #endif
   barrier();
@@ -112,7 +119,7 @@ void KeepRays(uint state, uint pixel)
   {
     groupLiveBegin = ReserveRays(groupLive, groupFirst);
   }
-#ifdef HAS_NORMALS
+#ifdef HIT_LIST
   if (gl_LocalInvocationIndex == 0u && groupHits > 0u)
   {
     groupHitsBegin = ReserveUnlit(groupHits);
@@ -123,7 +130,7 @@ void KeepRays(uint state, uint pixel)
   {
     rays[NextList(groupLiveBegin + at)] = pixel;
   }
-#ifdef HAS_NORMALS
+#ifdef HIT_LIST
   if (state == HIT)
   {
     rays[NextList(FromEnd(groupHitsBegin + at))] = pixel;
@@ -141,11 +148,12 @@ void main()
   uint state = DONE;
   if (index < control.Rays)
   {
-    bool fresh = index >= control.Carried;
 #ifdef HAS_RAYS
-    pixel = fresh ? PixelInTileOrder(control.Fresh + index - control.Carried) : rays[ThisList(index)];
-    bool waits = !fresh && BehindFrontier(pixel);
+    bool fresh = index >= BegunRays();
+    pixel = fresh ? PixelInTileOrder(control.Fresh + index - BegunRays()) : BegunPixel(index);
+    bool waits = !fresh && pixel != NONE && BehindFrontier(pixel);
 #else
+    bool fresh = true;
     pixel = PixelInTileOrder(index);
     bool waits = false;
 #endif

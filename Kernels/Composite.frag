@@ -1,50 +1,33 @@
 // The partial or complete image goes to the window, lit, with the depth that opaque geometry is tested against.
-// In: Hits, Depths, Normals.
+// In: Hits, Normals or Layers.
 
 #include "Scene.glsl"
 #include "Buffers.glsl"
 #include "Rays.glsl"
+#include "WindowDepth.glsl"
+#ifdef TRANSLUCENT
+#include "Layers.glsl"
+#else
+#include "Shading.glsl"
+#endif
 #ifdef HAS_NORMALS
 #include "PackedNormal.glsl"
 #endif
 
 layout(location = 0) out vec4 fragmentColor;
-
 #ifdef HAS_NORMALS
-vec3 Illuminate(vec3 position, vec3 normal, vec3 toViewer)
-{
-  vec3 color = scene.Material.x * scene.Color.rgb;
-  for (int i = 0; i < scene.Lighting.x; ++i)
-  {
-    vec4 place = scene.Lights[i].Place;
-    vec3 toLight = normalize(place.w == 0.0 ? place.xyz : place.xyz - position);
-    float cosine = dot(normal, toLight);
-    if (cosine > 0.0)
-    {
-      vec3 light = scene.Lights[i].Color.rgb;
-      float highlight = max(dot(reflect(-toLight, normal), toViewer), 0.0);
-      color += light * scene.Material.y * cosine * scene.Color.rgb;
-      color += light * scene.Material.z * pow(highlight, scene.Material.w);
-    }
-  }
-  return color;
-}
+// where VTK's passes ask for them, such as ambient occlusion: in view coordinates
+layout(location = 1) out vec4 fragmentPosition;
+layout(location = 2) out vec4 fragmentNormal;
 #endif
 
-vec3 Shade(uint pixel, float t)
+// A hit shows as soon as it is lit.
+#ifdef TRANSLUCENT
+bool Shows(uint pixel)
 {
-#ifdef HAS_NORMALS
-  vec3 direction = EyeRayDirection(pixel);
-  vec3 toViewer = -normalize(direction);
-  vec3 normal = UnpackNormal(normals[pixel]);
-  normal = dot(normal, toViewer) < 0.0 ? -normal : normal;
-  return Illuminate(EyeRayOrigin(pixel) + t * direction, normal, toViewer);
+  return layers[pixel] != uvec2(0u);
+}
 #else
-  return scene.Color.rgb;
-#endif
-}
-
-// A hit shows as soon as it can be lit.
 bool Shows(uint pixel)
 {
 #ifdef HAS_NORMALS
@@ -53,17 +36,26 @@ bool Shows(uint pixel)
   return hits[pixel] != NO_HIT;
 #endif
 }
+#endif
 
 void main()
 {
-  ivec2 xy = ivec2(gl_FragCoord.xy) - scene.Image.zw;
-  uint pixel = uint(xy.y * scene.Image.x + xy.x);
+  uint pixel = FragmentPixel();
   if (!Shows(pixel))
   {
     discard;
   }
-  float t = depths[pixel];
-  float z = (scene.DepthTerms.x + t * scene.DepthTerms.y) / (scene.DepthTerms.z + t * scene.DepthTerms.w);
-  gl_FragDepth = clamp(0.5 * z + 0.5, 0.0, 1.0);
-  fragmentColor = vec4(clamp(Shade(pixel, t), 0.0, 1.0), 1.0);
+  float t = DepthOf(pixel);
+  gl_FragDepth = WindowDepth(t);
+#ifdef TRANSLUCENT
+  fragmentColor = BlendedLayers(pixel);
+#else
+  vec3 normal = vec3(0.0);
+#ifdef HAS_NORMALS
+  normal = UnpackNormal(normals[pixel]);
+  fragmentPosition = vec4(EyeRayOrigin(pixel) + t * EyeRayDirection(pixel), 1.0);
+  fragmentNormal = vec4(dot(normal, EyeRayDirection(pixel)) > 0.0 ? -normal : normal, 1.0);
+#endif
+  fragmentColor = vec4(Shade(pixel, t, normal, HitOf(pixel).Surface), 1.0);
+#endif
 }

@@ -1,6 +1,8 @@
-// The normals of the hits that have come in (part of section 3.7), once a pixel. Central differences reach a voxel beyond
+// The normals of the hits that have come in (part of section 3.7), once a hit. Of a translucent image the hit is lit at
+// once and blended with what lies before it, and its ray goes on. Central differences reach a voxel beyond
 // the cell, also to the -x, -y and -z sides, where no ray may have asked for a block yet: such a hit asks, and waits.
-// In: Hits, Rays, CacheMap, CacheValues. Out: Normals, Rays, CacheRequests, CacheMap, Macrocells, Control.
+// In: Hits, Rays, CacheMap, CacheValues. Out: Normals or Layers, Rays, CacheRequests, CacheMap, Macrocells,
+// Control.
 
 #define GROUP 64u
 
@@ -14,15 +16,20 @@
 #endif
 #include "LiveRays.glsl"
 #include "Normals.glsl"
+#ifdef TRANSLUCENT
+#include "Shading.glsl"
+#include "Layers.glsl"
+#else
 #include "PackedNormal.glsl"
+#endif
 
 layout(local_size_x = 64) in; // GROUP
 
+#ifdef LIT
 // True where the normal has to wait for blocks.
-bool FindNormal(uint pixel)
+bool FindNormal(Ray ray, uint pixel, out vec3 normal)
 {
-  Ray ray = CameraRay(pixel);
-  HitPoint hit = HitOf(ray, hits[pixel]);
+  SurfacePoint hit = PointOf(ray, hits[pixel]);
   ivec3 first = FirstStencilBlock(hit.Cell);
   ivec3 reach = LastStencilBlock(hit.Cell) - first;
   uint missing = FindSlots(first, reach);
@@ -37,9 +44,42 @@ bool FindNormal(uint pixel)
     return true;
   }
   UseBlocks(first, reach);
-  normals[pixel] = PackNormal(ViewNormal(Gradient(hit), -normalize(EyeRayDirection(pixel))));
+  normal = ViewNormal(Gradient(hit), -normalize(EyeRayDirection(pixel)));
   return false;
 }
+#endif
+
+#define DONE 0u    // needs nothing more
+#define WAITS 1u   // for blocks
+#define GOES_ON 2u // the ray does, behind this hit
+
+#ifdef TRANSLUCENT
+uint Finish(uint pixel)
+{
+  vec3 normal = vec3(0.0);
+  Ray ray = CameraRay(pixel);
+#ifdef LIT
+  if (FindNormal(ray, pixel, normal))
+  {
+    return WAITS;
+  }
+#endif
+  Hit hit = HitOf(pixel);
+  vec3 color = Shade(pixel, float(HitT(ray, hit.Key)), normal, hit.Surface);
+  return AddLayer(pixel, color, scene.Colors[hit.Surface].w) ? GOES_ON : DONE;
+}
+#else
+uint Finish(uint pixel)
+{
+  vec3 normal;
+  bool waits = FindNormal(CameraRay(pixel), pixel, normal);
+  if (!waits)
+  {
+    normals[pixel] = PackNormal(normal);
+  }
+  return waits ? WAITS : DONE;
+}
+#endif
 
 #ifdef HAS_RAYS
 shared uint groupUnlit;
@@ -71,23 +111,46 @@ void KeepUnlit(bool unlit, uint pixel)
   }
 }
 
+#ifdef TRANSLUCENT
+// In the list of hits only those stay whose rays go on; the next pass takes them from there.
+void KeepGoing(uint index, uint pixel, bool goesOn)
+{
+  if (goesOn)
+  {
+    atomicAdd(control.GoingOn, 1u);
+    NoteLive(TileOrderOf(pixel));
+  }
+  else if (pixel != NONE)
+  {
+    rays[NextList(FromEnd(index))] = NONE;
+  }
+}
+#endif
+
 void main()
 {
+#ifdef HAS_CACHE_MAP
   OpenRequests();
+#endif
   barrier();
   for (uint first = GROUP * gl_WorkGroupID.x; first < control.Unlit; first += GROUP * gl_NumWorkGroups.x)
   {
     uint index = first + gl_LocalInvocationIndex;
     uint pixel = NONE;
-    bool unlit = false;
+    uint state = DONE;
     if (index < control.Unlit)
     {
       pixel = rays[NextList(FromEnd(index))];
-      unlit = BehindFrontier(pixel) || FindNormal(pixel);
+      state = BehindFrontier(pixel) ? WAITS : Finish(pixel);
     }
-    KeepUnlit(unlit, pixel);
+    KeepUnlit(state == WAITS, pixel);
+#ifdef TRANSLUCENT
+    KeepGoing(index, pixel, state == GOES_ON);
+#endif
   }
+#ifdef HAS_CACHE_MAP
   CloseRequests();
+#endif
 }
 #else
 void main()
@@ -96,7 +159,7 @@ void main()
   uint pixel = order < PixelsInTiles() ? PixelInTileOrder(order) : NONE;
   if (pixel != NONE && hits[pixel] != NO_HIT)
   {
-    FindNormal(pixel);
+    Finish(pixel);
   }
 }
 #endif

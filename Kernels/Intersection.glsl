@@ -112,22 +112,60 @@ float RefineRoot(vec4 b, float low, float high, bool lowInside)
   return s;
 }
 
-// The first s in [0, 1] at which inside and outside meet; negative if there is none.
-float FirstTransition(vec4 b)
+// The three pieces between the cubic's ends and its extrema, and which of their ends are inside.
+struct Pieces
+{
+  vec2 Turn;
+  bvec4 Inside;
+};
+
+// False where all of it is on one side: the cubic stays within the hull of its coefficients.
+bool FindPieces(vec4 b, out Pieces pieces)
 {
   bvec4 inside = greaterThanEqual(b, vec4(0.0));
   if (all(inside) || !any(inside))
   {
-    return -1.0; // the cubic stays within the hull of its coefficients
+    return false;
   }
   vec2 turn = Extrema(b);
-  bool first = inside.x;
-  bool second = turn.x < 1.0 ? Inside(CubicValue(b, turn.x)) : inside.w;
-  bool third = turn.y < 1.0 ? Inside(CubicValue(b, turn.y)) : inside.w;
-  vec2 bracket = second != first ? vec2(0.0, turn.x) : third != first ? turn : vec2(turn.y, 1.0);
-  bool none = second == first && third == first && inside.w == first;
-  return none ? -1.0 : RefineRoot(b, bracket.x, bracket.y, first);
+  pieces.Turn = turn;
+  pieces.Inside.x = inside.x;
+  pieces.Inside.y = turn.x < 1.0 ? Inside(CubicValue(b, turn.x)) : inside.w;
+  pieces.Inside.z = turn.y < 1.0 ? Inside(CubicValue(b, turn.y)) : inside.w;
+  pieces.Inside.w = inside.w;
+  return true;
 }
+
+// The first s in [0, 1] at which inside and outside meet; negative if there is none.
+float FirstTransition(vec4 b)
+{
+  Pieces at;
+  if (!FindPieces(b, at))
+  {
+    return -1.0;
+  }
+  bvec4 in_ = at.Inside;
+  vec2 bracket = in_.y != in_.x ? vec2(0.0, at.Turn.x) : in_.z != in_.x ? at.Turn : vec2(at.Turn.y, 1.0);
+  bool none = in_.y == in_.x && in_.z == in_.x && in_.w == in_.x;
+  return none ? -1.0 : RefineRoot(b, bracket.x, bracket.y, in_.x);
+}
+
+#ifdef MANY_CROSSINGS
+// The s on each of the pieces, likewise; negative where there is none.
+vec3 Transitions(vec4 b)
+{
+  vec3 s = vec3(-1.0);
+  Pieces at;
+  if (FindPieces(b, at))
+  {
+    bvec4 in_ = at.Inside;
+    s.x = in_.y != in_.x ? RefineRoot(b, 0.0, at.Turn.x, in_.x) : -1.0;
+    s.y = in_.z != in_.y ? RefineRoot(b, at.Turn.x, at.Turn.y, in_.y) : -1.0;
+    s.z = in_.w != in_.z ? RefineRoot(b, at.Turn.y, 1.0, in_.z) : -1.0;
+  }
+  return s;
+}
+#endif
 
 // Are there corners on both sides?
 bool Straddle(Corners w)

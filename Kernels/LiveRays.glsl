@@ -46,11 +46,6 @@ void CountWork()
 }
 
 #ifdef HAS_RAYS
-uint ImagePixels()
-{
-  return uint(scene.Image.x * scene.Image.y);
-}
-
 // Element of the list of this pass, and of the one that is made for the next.
 uint ThisList(uint index)
 {
@@ -87,7 +82,7 @@ uint ReserveRays(uint count, uint first)
   return at;
 }
 
-#ifdef HAS_NORMALS
+#ifdef HIT_LIST
 // Takes places for hits without a normal.
 uint ReserveUnlit(uint count)
 {
@@ -102,12 +97,24 @@ uint FromEnd(uint index)
   return ImagePixels() - 1u - index;
 }
 #endif
-#endif
 
-#ifdef BINDING_DEPTHS
-void KeepHit(Ray ray, uint pixel, uint key)
+// Pixel of a ray of this pass that has begun. Those of translucent hits stand in the list of those hits; NONE for one
+// that has ended, or still waits there.
+uint BegunPixel(uint index)
 {
-  hits[pixel] = key;
-  depths[pixel] = float(HitT(ray, key));
+#ifdef TRANSLUCENT
+  return index < control.Carried ? rays[ThisList(index)] : rays[ThisList(FromEnd(index - control.Carried))];
+#else
+  return rays[ThisList(index)];
+#endif
+}
+
+uint BegunRays()
+{
+#ifdef TRANSLUCENT
+  return control.Carried + control.Again;
+#else
+  return control.Carried;
+#endif
 }
 #endif

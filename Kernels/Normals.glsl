@@ -1,17 +1,17 @@
 // The surface's normal where a ray has met it: the trilinear interpolant of the voxels' central differences, as
 // in VTK's mapper, hence continuous across cells and blocks.
 
-struct HitPoint
+struct SurfacePoint
 {
   ivec3 Cell; // that holds the hit
   vec3 Local; // coordinates in its unit cube
 };
 
 // From the key alone, so that it is the same in whichever pass the normal is found.
-HitPoint HitOf(Ray ray, uint key)
+SurfacePoint PointOf(Ray ray, uint key)
 {
   dvec3 p = ray.Origin + HitT(ray, key) * ray.Direction;
-  HitPoint hit;
+  SurfacePoint hit;
   hit.Cell = ivec3(clamp(floor(p), dvec3(0.0LF), dvec3(scene.Samples.xyz - 2)));
   hit.Local = clamp(vec3(p - dvec3(hit.Cell)), vec3(0.0), vec3(1.0));
   return hit;
@@ -72,7 +72,7 @@ Stencil PlaceStencil(ivec3 cell)
 #endif
 
 // Central differences at the cell's corners, interpolated. Planes y and z of the stencil are the cell's own.
-vec3 Gradient(HitPoint hit)
+vec3 Gradient(SurfacePoint hit)
 {
   Stencil at = PlaceStencil(hit.Cell);
   // at the corners, x fastest; then across them to the outer planes of each axis, the axis' side the slowest

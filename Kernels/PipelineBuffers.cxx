@@ -25,19 +25,26 @@ std::int64_t MacrocellBytes(const PipelineExtent& e)
   return (8 + 2 * 64 + (e.Cached ? 4 + 64 / 8 : 0)) * e.CoarseCells;
 }
 
+// of the hit the key and the depth, with several isovalues which it is, and the obstacle's depth
 std::int64_t HitBytes(const PipelineExtent& e)
 {
-  return 4 * e.Pixels;
+  return 4 * (2 + e.SeveralIsovalues + e.Obstructed) * e.Pixels;
 }
 
+// the hits of a translucent image are lit at once
 std::int64_t NormalBytes(const PipelineExtent& e)
 {
-  return e.Lit ? 4 * e.Pixels : 0;
+  return e.Lit && !e.Translucent ? 4 * e.Pixels : 0;
+}
+
+std::int64_t LayerBytes(const PipelineExtent& e)
+{
+  return e.Translucent ? 8 * e.Pixels : 0;
 }
 
 std::int64_t RayBytes(const PipelineExtent& e)
 {
-  return e.Cached ? 3 * 4 * e.Pixels : 0;
+  return e.IsSinglePass() ? 0 : 3 * 4 * e.Pixels;
 }
 
 std::int64_t ValueBytes(const PipelineExtent& e)
@@ -75,9 +82,9 @@ const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers()
     { Buffer::PassStatistics, "pass_statistics",  "PASS_STATISTICS",  Lifetime::Pipeline, StatisticsBytes, "PlanPass",                              "the mapper" },
     { Buffer::Payload,        "compressed",       "PAYLOAD",          Lifetime::Volume,   PayloadBytes,    "the mapper",                            "BlockRanges, DecodeBlocks" },
     { Buffer::Macrocells,     "macrocells",       "MACROCELLS",       Lifetime::Volume,   MacrocellBytes,  "BlockRanges, FindNormals, RequestBlocks, DecodeBlocks, CacheEvict, CacheReset", "CastRays, CastFewRays, FindNormals, RequestBlocks, DecodeBlocks" },
-    { Buffer::Hits,           "hits",             "HITS",             Lifetime::Image,    HitBytes,        "CastRays, CastFewRays",                 "FindNormals, Composite" },
-    { Buffer::Depths,         "depths",           "DEPTHS",           Lifetime::Image,    HitBytes,        "CastRays, CastFewRays",                 "Composite" },
+    { Buffer::Hits,           "hits",             "HITS",             Lifetime::Image,    HitBytes,        "CastRays, CastFewRays, the mapper",     "all stages that cast rays, Composite, Select" },
     { Buffer::Normals,        "normals",          "NORMALS",          Lifetime::Image,    NormalBytes,     "FindNormals",                           "FindNormals, Composite" },
+    { Buffer::Layers,         "layers",           "LAYERS",           Lifetime::Image,    LayerBytes,      "FindNormals",                           "FindNormals, Composite" },
     { Buffer::Rays,           "rays",             "RAYS",             Lifetime::Image,    RayBytes,        "CastRays, CastFewRays",                 "RequestBlocks, CastRays, CastFewRays" },
     { Buffer::CacheValues,    "cache_values",     "CACHE_VALUES",     Lifetime::Cache,    ValueBytes,      "DecodeBlocks",                          "CastRays, CastFewRays, FindNormals, BlockRanges" },
     { Buffer::CacheMap,       "cache_map",        "CACHE_MAP",        Lifetime::Cache,    MapBytes,        "CastRays, CastFewRays, FindNormals, RequestBlocks, DecodeBlocks, CacheEvict, CacheReset", "CastRays, CastFewRays, FindNormals, RequestBlocks, CacheAges, CacheEvict" },

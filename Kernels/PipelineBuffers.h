@@ -15,8 +15,8 @@ enum class Buffer
   Payload,
   Macrocells,
   Hits,
-  Depths,
   Normals,
+  Layers,
   Rays,
   CacheValues,
   CacheMap,
@@ -38,6 +38,20 @@ struct PipelineExtent
   bool Cached = true;    ///< false: the whole volume is decoded, once
   bool Lit = false;      ///< hits need normals
   bool Detailed = false; ///< distinct blocks are counted
+  bool SeveralIsovalues = false;
+  bool Translucent = false; ///< rays go on behind a hit
+  bool Obstructed = false;  ///< by opaque geometry, where translucent rays end
+  bool Clipped = false;     ///< by planes
+  bool Cropped = false;     ///< to regions
+
+  /// The features above, a bit each.
+  std::uint32_t GetFeatures() const
+  {
+    return this->Cached | this->Lit << 1 | this->Detailed << 2 | this->SeveralIsovalues << 3 |
+      this->Translucent << 4 | this->Obstructed << 5 | this->Clipped << 6 | this->Cropped << 7;
+  }
+  /// Do rays begin and end in one pass?
+  bool IsSinglePass() const { return !this->Cached && !this->Translucent; }
 };
 
 /// When a buffer's size changes, and with it its contents are void.
@@ -81,7 +95,8 @@ struct ControlBlock
   std::uint32_t Requests, Refused, VisibleBlocks, ActiveBlocks;
   std::uint32_t TouchedSlots, FreeSlotsBegin, FreeSlots, ReturnedSlots;
   std::uint32_t FreePagesBegin, FreePages, TakenPages, EvictWanted;
-  std::uint32_t EvictByPages, Evicted, RefusedBefore, Pad;
+  std::uint32_t EvictByPages, Evicted, RefusedBefore, Again;
+  std::uint32_t GoingOn, Pad[3];
   DispatchArguments CastGroups, FewGroups, NormalGroups, RequestGroups, DecodeGroups, EvictGroups;
   std::uint32_t Ages[256];
 };

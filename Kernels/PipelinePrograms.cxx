@@ -41,10 +41,10 @@ std::shared_ptr<PipelinePrograms> PipelinePrograms::OfContext(
   return programs;
 }
 
-GLuint PipelinePrograms::Get(Stage stage, const std::vector<Buffer>& bound,
-  const PipelineExtent& extent, std::string& error)
+GLuint PipelinePrograms::Get(
+  Stage stage, const std::vector<Buffer>& bound, const PipelineExtent& extent, std::string& error)
 {
-  const Variant variant(stage, bound, extent.Cached, extent.Lit, extent.Detailed);
+  const Variant variant(stage, bound, extent.GetFeatures());
   const auto found = this->Programs.find(variant);
   if (found != this->Programs.end())
   {
@@ -62,15 +62,13 @@ GLuint PipelinePrograms::Build(Stage stage, const std::vector<Buffer>& bound,
   const PipelineExtent& extent, std::string& error) const
 {
   const std::string name = PipelineStages()[static_cast<int>(stage)].Name;
-  const auto attach = [&](GLuint program, GLenum type, const char* suffix)
-  {
-    return AttachShader(
-      program, type, AssembleShader(name + suffix, bound, extent, this->ByExtensions));
-  };
   const GLuint program = glCreateProgram();
-  const std::string log = stage == Stage::Composite
-    ? attach(program, GL_VERTEX_SHADER, ".vert") + attach(program, GL_FRAGMENT_SHADER, ".frag")
-    : attach(program, GL_COMPUTE_SHADER, ".comp");
+  const auto attach = [&](GLenum type, const std::string& file)
+  { return AttachShader(program, type, AssembleShader(file, bound, extent, this->ByExtensions)); };
+  const bool draws = stage == Stage::Composite || stage == Stage::Select;
+  const std::string log = draws
+    ? attach(GL_VERTEX_SHADER, "Viewport.vert") + attach(GL_FRAGMENT_SHADER, name + ".frag")
+    : attach(GL_COMPUTE_SHADER, name + ".comp");
   glLinkProgram(program);
   GLint linked = 0;
   glGetProgramiv(program, GL_LINK_STATUS, &linked);

@@ -38,8 +38,8 @@ private:
   GLuint Build(Stage stage, const std::vector<Buffer>& bound, const PipelineExtent& extent,
     std::string& error) const;
 
-  /// stage, buffers bound, and what the scene needs: Cached, Lit, Detailed
-  using Variant = std::tuple<Stage, std::vector<Buffer>, bool, bool, bool>;
+  /// stage, buffers bound, and what the scene needs, see PipelineExtent
+  using Variant = std::tuple<Stage, std::vector<Buffer>, std::uint32_t>;
   std::map<Variant, GLuint> Programs;
   bool ByExtensions; ///< the context is older than 4.3 but offers what we need
 };

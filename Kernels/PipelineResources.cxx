@@ -18,7 +18,13 @@ constexpr std::int64_t LargestRead = 1 << 18;      // bytes read at once
 constexpr std::int64_t LargestStaging = 1 << 12;   // bytes that stay allocated between reads
 constexpr std::int64_t MostSnapshots = 8;          // under way at once, with room to spare
 constexpr std::int64_t SoftwareBuffer = 1LL << 30; // llvmpipe has no limit, whatever it reports
-constexpr std::int64_t LargeBuffer = 1 << 25;      // bytes from which on a buffer is made sparse
+
+// Bytes beyond which a buffer is made sparse: NVIDIA then backs it with large pages. Random reads
+// of a plain buffer are as fast up to 128 MiB and then 10 to 400 times slower, but it is made 10
+// times faster, which counts for the decoded blocks: their buffer comes and goes with the scene,
+// and neighbouring rays read neighbouring values.
+constexpr std::int64_t LargestPlain = 1LL << 27;
+constexpr std::int64_t LargestPlainValues = 1LL << 29;
 
 int Index(Buffer buffer)
 {
@@ -96,8 +102,8 @@ void PipelineResources::AskLimits()
   this->LargestAllowed = this->Software ? SoftwareBuffer : static_cast<std::int64_t>(largest);
   this->LimitBuffers(0);
   const std::set<std::string> offered = OfferedExtensions();
-  this->OffersSparse = offered.count("GL_ARB_sparse_buffer") > 0 && glBufferStorage &&
-    glBufferPageCommitmentARB;
+  this->OffersSparse =
+    offered.count("GL_ARB_sparse_buffer") > 0 && glBufferStorage && glBufferPageCommitmentARB;
   GLint kibibytes[4] = { 0, 0, 0, 0 };
   if (offered.count("GL_NVX_gpu_memory_info"))
   {
@@ -253,11 +259,17 @@ void PipelineResources::DispatchIndirect(Stage stage, std::size_t controlOffset)
   this->Run(stage, [=]() { glDispatchComputeIndirect(static_cast<GLintptr>(controlOffset)); });
 }
 
-void PipelineResources::DrawComposite()
+void PipelineResources::Draw(Stage stage, const std::array<float, 4>* selected)
 {
-  this->Run(Stage::Composite,
-    [this]()
+  this->Run(stage,
+    [=]()
     {
+      if (selected)
+      {
+        GLint program = 0;
+        glGetIntegerv(GL_CURRENT_PROGRAM, &program);
+        glUniform4fv(glGetUniformLocation(program, "selected"), 1, selected->data());
+      }
       glBindVertexArray(this->VertexArray);
       glDrawArrays(GL_TRIANGLES, 0, 3);
       glBindVertexArray(0);
@@ -347,7 +359,8 @@ std::int64_t PipelineResources::GetBytes(Buffer buffer) const
   return bytes;
 }
 
-bool PipelineResources::MakeBuffer(GLuint& name, std::int64_t bytes, const char* what)
+bool PipelineResources::MakeBuffer(
+  GLuint& name, std::int64_t bytes, std::int64_t largestPlain, const char* what)
 {
   if (bytes > this->LargestBuffer)
   {
@@ -361,11 +374,10 @@ bool PipelineResources::MakeBuffer(GLuint& name, std::int64_t bytes, const char*
   glGenBuffers(1, &name);
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
   const GLsizeiptr size = static_cast<GLsizeiptr>(bytes);
-  if (this->OffersSparse && bytes >= LargeBuffer)
+  if (this->OffersSparse && bytes > largestPlain)
   {
-    // NVIDIA backs it with large pages: random reads of 1 GiB are up to 400 times faster than in a plain buffer
-    glBufferStorage(GL_SHADER_STORAGE_BUFFER, size, nullptr,
-      GL_SPARSE_STORAGE_BIT_ARB | GL_DYNAMIC_STORAGE_BIT);
+    glBufferStorage(
+      GL_SHADER_STORAGE_BUFFER, size, nullptr, GL_SPARSE_STORAGE_BIT_ARB | GL_DYNAMIC_STORAGE_BIT);
     glBufferPageCommitmentARB(GL_SHADER_STORAGE_BUFFER, 0, size, GL_TRUE);
   }
   else
@@ -391,7 +403,8 @@ bool PipelineResources::Allocate(Buffer buffer, std::int64_t bytes)
     return true;
   }
   this->Free(buffer);
-  if (bytes > 0 && !this->MakeBuffer(this->Names[i], bytes, PipelineBuffers()[i].Name))
+  const std::int64_t plain = buffer == Buffer::CacheValues ? LargestPlainValues : LargestPlain;
+  if (bytes > 0 && !this->MakeBuffer(this->Names[i], bytes, plain, PipelineBuffers()[i].Name))
   {
     return false;
   }
@@ -469,7 +482,7 @@ bool PipelineResources::UploadPayload(
   for (const PayloadSegment& segment : segments)
   {
     GLuint name = 0;
-    if (!this->MakeBuffer(name, segment.Bytes, "the compressed volume"))
+    if (!this->MakeBuffer(name, segment.Bytes, LargestPlain, "the compressed volume"))
     {
       return false;
     }
@@ -514,13 +527,13 @@ void PipelineResources::Read(Buffer buffer, std::int64_t offset, void* data, std
   {
     const GLsizeiptr part = static_cast<GLsizeiptr>(std::min(LargestRead, bytes - done));
     glBufferData(GL_COPY_WRITE_BUFFER, part, nullptr, GL_STREAM_READ);
-    glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER,
-      static_cast<GLintptr>(offset + done), 0, part);
+    glCopyBufferSubData(
+      GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(offset + done), 0, part);
     glGetBufferSubData(GL_COPY_WRITE_BUFFER, 0, part, static_cast<char*>(data) + done);
   }
   this->StagingBytes = std::min(bytes, LargestStaging);
-  glBufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(this->StagingBytes), nullptr,
-    GL_STREAM_READ);
+  glBufferData(
+    GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(this->StagingBytes), nullptr, GL_STREAM_READ);
   glBindBuffer(GL_COPY_READ_BUFFER, 0);
   glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
 }
@@ -546,6 +559,91 @@ void PipelineResources::UploadScene(const SceneBlock& scene)
   glBindBuffer(GL_UNIFORM_BUFFER, 0);
 }
 
+namespace
+{
+// Internal format of the depths that the framebuffer to be read from has.
+GLenum DepthFormat(bool& stencil)
+{
+  GLint bits = 0, type = 0, stencilBits = 0, bound = 0;
+  glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &bound);
+  const GLenum depth = bound ? GL_DEPTH_ATTACHMENT : GL_DEPTH; // the window's own names it so
+  const auto ask = [depth](GLenum what, GLint& answer)
+  { glGetFramebufferAttachmentParameteriv(GL_READ_FRAMEBUFFER, depth, what, &answer); };
+  ask(GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE, bits);
+  ask(GL_FRAMEBUFFER_ATTACHMENT_STENCIL_SIZE, stencilBits);
+  ask(GL_FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE, type);
+  stencil = stencilBits > 0;
+  if (type == GL_FLOAT)
+  {
+    return stencil ? GL_DEPTH32F_STENCIL8 : GL_DEPTH_COMPONENT32F;
+  }
+  return stencil ? GL_DEPTH24_STENCIL8
+    : bits == 16 ? GL_DEPTH_COMPONENT16
+    : bits == 24 ? GL_DEPTH_COMPONENT24
+                 : GL_DEPTH_COMPONENT32;
+}
+
+// A framebuffer of one sample a pixel, with the depths of the one that is read from; it is bound to
+// be read from instead, until it is destroyed.
+class ResolvedDepths
+{
+public:
+  explicit ResolvedDepths(const std::int32_t image[4])
+  {
+    bool stencil = false;
+    const GLenum format = DepthFormat(stencil);
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &this->Drawn);
+    glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &this->Read);
+    glGenRenderbuffers(1, &this->Depths);
+    glBindRenderbuffer(GL_RENDERBUFFER, this->Depths);
+    glRenderbufferStorage(GL_RENDERBUFFER, format, image[2] + image[0], image[3] + image[1]);
+    glBindRenderbuffer(GL_RENDERBUFFER, 0);
+    glGenFramebuffers(1, &this->Framebuffer);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, this->Framebuffer);
+    glFramebufferRenderbuffer(GL_DRAW_FRAMEBUFFER,
+      stencil ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, this->Depths);
+    glBlitFramebuffer(image[2], image[3], image[2] + image[0], image[3] + image[1], image[2],
+      image[3], image[2] + image[0], image[3] + image[1], GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, this->Framebuffer);
+  }
+  ~ResolvedDepths()
+  {
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(this->Drawn));
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(this->Read));
+    glDeleteFramebuffers(1, &this->Framebuffer);
+    glDeleteRenderbuffers(1, &this->Depths);
+  }
+  ResolvedDepths(const ResolvedDepths&) = delete;
+  void operator=(const ResolvedDepths&) = delete;
+
+private:
+  GLint Drawn = 0, Read = 0;
+  GLuint Framebuffer = 0, Depths = 0;
+};
+}
+
+// What is drawn into now is read, whatever was to be read from before.
+void PipelineResources::CaptureDepths(
+  const std::int32_t image[4], Buffer buffer, std::int64_t offset)
+{
+  GLint drawn = 0, read = 0, samples = 0;
+  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &drawn);
+  glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &read);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(drawn));
+  glGetIntegerv(GL_SAMPLES, &samples);
+  {
+    const std::unique_ptr<ResolvedDepths> resolved(
+      samples > 0 ? new ResolvedDepths(image) : nullptr);
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, this->Names[Index(buffer)]);
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    glReadPixels(image[2], image[3], image[0], image[1], GL_DEPTH_COMPONENT, GL_FLOAT,
+      reinterpret_cast<void*>(static_cast<std::intptr_t>(offset)));
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+  }
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(read));
+  glMemoryBarrier(GL_ALL_BARRIER_BITS);
+}
+
 void PipelineResources::OrderSnapshot()
 {
   Order order = { 0, nullptr };
@@ -563,8 +661,7 @@ void PipelineResources::OrderSnapshot()
   }
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glBindBuffer(GL_COPY_READ_BUFFER, this->Names[Index(Buffer::Control)]);
-  glCopyBufferSubData(
-    GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, sizeof(Snapshot::Control));
+  glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, sizeof(Snapshot::Control));
   glBindBuffer(GL_COPY_READ_BUFFER, this->Names[Index(Buffer::PassStatistics)]);
   glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, offsetof(Snapshot, Records),
     sizeof(Snapshot::Records));

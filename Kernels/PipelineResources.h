@@ -81,6 +81,8 @@ public:
   void Read(Buffer buffer, std::int64_t offset, void* data, std::int64_t bytes);
   void Write(Buffer buffer, std::size_t offset, const void* data, std::size_t bytes);
   void UploadScene(const SceneBlock& scene);
+  /// Copy the depths of a part of the current framebuffer (width, height, origin) into a buffer.
+  void CaptureDepths(const std::int32_t image[4], Buffer buffer, std::int64_t offset);
   ///@}
 
   ///@{ Snapshots are ordered now and arrive in that order, without anyone waiting in between.
@@ -95,8 +97,8 @@ public:
   void Dispatch(Stage stage, std::int64_t groups);
   void DispatchIndirect(Stage stage, std::size_t controlOffset);
   ///@}
-  /// Draw the viewport with the composite stage, and leave no binding behind.
-  void DrawComposite();
+  /// Draw the viewport with a stage that does, and leave no binding behind.
+  void Draw(Stage stage, const std::array<float, 4>* selected = nullptr);
 
   /// What the scene needs; it chooses the variants of the stages.
   void SetExtent(const PipelineExtent& extent) { this->Extent = extent; }
@@ -136,7 +138,7 @@ private:
   bool CheckContext();
   void AskLimits();
   bool Allocate(Buffer buffer, std::int64_t bytes);
-  bool MakeBuffer(GLuint& name, std::int64_t bytes, const char* what);
+  bool MakeBuffer(GLuint& name, std::int64_t bytes, std::int64_t largestPlain, const char* what);
   void Free(Buffer buffer);
   bool Bind(Stage stage, const PayloadSegment* segment);
   template <typename Launch>

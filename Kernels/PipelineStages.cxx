@@ -4,6 +4,7 @@
 
 #include <set>
 #include <sstream>
+#include <utility>
 
 const std::vector<StageInfo>& PipelineStages()
 {
@@ -15,12 +16,13 @@ const std::vector<StageInfo>& PipelineStages()
     { Stage::CacheReset,    "CacheReset",    { B::Control, B::Macrocells, B::CacheMap, B::CacheFreeSlots } },
     { Stage::CacheAges,     "CacheAges",     { B::Control, B::CacheMap } },
     { Stage::CacheEvict,    "CacheEvict",    { B::Control, B::Macrocells, B::CacheMap, B::CacheFreeSlots } },
-    { Stage::CastRays,      "CastRays",      { B::Control, B::Macrocells, B::CacheMap, B::CacheValues, B::Hits, B::Depths, B::Rays, B::CacheSeen } },
-    { Stage::CastFewRays,   "CastFewRays",   { B::Control, B::Macrocells, B::CacheMap, B::CacheValues, B::Hits, B::Depths, B::Rays, B::CacheSeen } },
-    { Stage::FindNormals,   "FindNormals",   { B::Control, B::Macrocells, B::CacheMap, B::CacheValues, B::CacheRequests, B::Hits, B::Normals, B::Rays } },
-    { Stage::RequestBlocks, "RequestBlocks", { B::Control, B::Macrocells, B::CacheMap, B::CacheRequests, B::Rays } },
+    { Stage::CastRays,      "CastRays",      { B::Control, B::Macrocells, B::CacheMap, B::CacheValues, B::Hits, B::Rays, B::CacheSeen } },
+    { Stage::CastFewRays,   "CastFewRays",   { B::Control, B::Macrocells, B::CacheMap, B::CacheValues, B::Hits, B::Rays, B::CacheSeen } },
+    { Stage::FindNormals,   "FindNormals",   { B::Control, B::Macrocells, B::CacheMap, B::CacheValues, B::CacheRequests, B::Hits, B::Normals, B::Layers, B::Rays } },
+    { Stage::RequestBlocks, "RequestBlocks", { B::Control, B::Macrocells, B::CacheMap, B::CacheRequests, B::Hits, B::Rays } },
     { Stage::DecodeBlocks,  "DecodeBlocks",  { B::Control, B::Payload, B::Macrocells, B::CacheMap, B::CacheFreeSlots, B::CacheRequests, B::CacheValues } },
-    { Stage::Composite,     "Composite",     { B::Hits, B::Depths, B::Normals } },
+    { Stage::Composite,     "Composite",     { B::Hits, B::Normals, B::Layers } },
+    { Stage::Select,        "Select",        { B::Hits } },
   };
   // clang-format on
   return stages;
@@ -96,6 +98,14 @@ std::string AssembleShader(const std::string& file, const std::vector<Buffer>& b
     {
       out << "#define HAS_" << info.Macro << "\n";
     }
+  }
+  const std::pair<bool, const char*> features[] = { { extent.Lit, "LIT" },
+    { extent.SeveralIsovalues, "SEVERAL_ISOVALUES" }, { extent.Translucent, "TRANSLUCENT" },
+    { extent.Obstructed, "OBSTRUCTED" }, { extent.Clipped, "CLIPPED" },
+    { extent.Cropped, "CROPPED" } };
+  for (const auto& feature : features)
+  {
+    out << (feature.first ? std::string("#define ") + feature.second + "\n" : "");
   }
   std::set<std::string> pasted;
   Paste(file, pasted, out);

@@ -23,6 +23,7 @@ enum class Stage
   RequestBlocks,
   DecodeBlocks,
   Composite,
+  Select,
   NumberOfStages
 };
 constexpr int NumberOfStages = static_cast<int>(Stage::NumberOfStages);
@@ -30,8 +31,9 @@ constexpr int NumberOfStages = static_cast<int>(Stage::NumberOfStages);
 struct StageInfo
 {
   Stage Id;
-  const char* Name;            ///< also the name of its GLSL file
-  std::vector<Buffer> Buffers; ///< in the order of their bindings; at most 8, OpenGL 4.3's guarantee
+  const char* Name; ///< also the name of its GLSL file
+  std::vector<Buffer>
+    Buffers; ///< in the order of their bindings; at most 8, OpenGL 4.3's guarantee
 };
 
 /// The table itself, in the order of the enumeration.

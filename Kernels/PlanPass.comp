@@ -26,6 +26,8 @@ void OpenImage()
   control.Carried = 0u;
   control.NextCarried = 0u;
   control.NextUnlit = 0u;
+  control.Again = 0u;
+  control.GoingOn = 0u;
   control.Fresh = 0u;
   control.FirstLive = 0u;
   control.Window = PixelsInTiles();
@@ -58,7 +60,7 @@ void CloseCache(inout PassRecord record)
 
 void ClosePass()
 {
-  control.Fresh += control.Rays - control.Carried;
+  control.Fresh += control.Rays - control.Carried - control.Again;
   PassRecord record;
   record.ActiveRays = control.ActiveRays;
   record.Speculation = Speculation(control.NextCarried);
@@ -67,7 +69,7 @@ void ClosePass()
   record.ActiveBlocks = control.ActiveBlocks;
   record.DecodedBlocks = 0u;
   record.CachedBlocks = uint(scene.Blocks.w);
-  record.RemainingRays = control.NextCarried + control.NextUnlit + min(PixelsInTiles() - control.Fresh, Pixels());
+  record.RemainingRays = control.NextCarried + control.GoingOn + control.NextUnlit + min(PixelsInTiles() - control.Fresh, Pixels());
   record.RefusedBlocks = 0u;
   record.TouchedSlots = 0u;
 #ifdef HAS_CACHE_MAP
@@ -124,11 +126,15 @@ void PlanRays()
 {
   control.Carried = control.NextCarried;
   control.NextCarried = 0u;
+#ifdef TRANSLUCENT
+  control.Again = control.GoingOn > 0u ? control.Unlit : 0u;
+  control.GoingOn = 0u;
+#endif
   control.Unlit = control.NextUnlit;
   control.NextUnlit = 0u;
   control.List ^= 1u;
   uint fresh = control.Frontier > control.Fresh ? control.Frontier - control.Fresh : 0u;
-  control.Rays = control.Carried + fresh;
+  control.Rays = control.Carried + control.Again + fresh;
 }
 
 uvec2 Folded(uint groups)
@@ -139,7 +145,7 @@ uvec2 Folded(uint groups)
 // Where there are so few rays that each can have a work group, it gets one.
 void PlanDispatches()
 {
-  bool carried = control.Rays == control.Carried;
+  bool carried = control.Rays == control.Carried + control.Again;
   bool few = carried && scene.Policy.x > 0u && control.Rays <= Pixels() / scene.Policy.x;
   uvec2 groups = few ? Folded(control.Rays) : Folded((control.Rays + CAST_GROUP - 1u) / CAST_GROUP);
   control.CastGroups.X = few ? 0u : groups.x;

@@ -4,16 +4,19 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 
 namespace
 {
-constexpr std::int64_t AutomaticValues = 1LL << 30; // bytes of decoded blocks where no budget is set
+constexpr std::int64_t AutomaticValues = 1LL
+  << 30;                                  // bytes of decoded blocks where no budget is set
 constexpr std::int64_t LeastSlots = 2048; // any 64 rays find room for all that they need at once
 constexpr std::int64_t LeastPages = 512;  // of the block map, likewise
 constexpr std::int64_t SlotsPerPage = 8;  // else
 constexpr std::int64_t FirstSlots = 16384;
-constexpr std::int64_t Growth = 4; // of the cache, at least
+constexpr std::int64_t Growth = 4;   // of the cache, at least
+constexpr int MostRefusals = 3;      // in a row, of a cache that has a slot for every pixel
 constexpr int PassesAhead = 3;       // submitted before the CPU knows whether they are needed
 constexpr int PatienceWithNone = 64; // passes that get nowhere before we give up
 constexpr std::size_t RecentImages = 8;
@@ -43,9 +46,8 @@ bool ProgressivePipeline::Initialize(const void* context)
     return false;
   }
   ControlBlock control = {};
-  for (DispatchArguments* groups :
-    { &control.CastGroups, &control.FewGroups, &control.NormalGroups, &control.RequestGroups,
-      &control.DecodeGroups, &control.EvictGroups })
+  for (DispatchArguments* groups : { &control.CastGroups, &control.FewGroups, &control.NormalGroups,
+         &control.RequestGroups, &control.DecodeGroups, &control.EvictGroups })
   {
     *groups = { 0, 1, 1, 0 };
   }
@@ -140,9 +142,8 @@ std::int64_t ProgressivePipeline::MaximumSlots() const
 std::int64_t ProgressivePipeline::GetLeastMemoryBudget() const
 {
   const std::int64_t cached = this->BytesWith(this->WithSlots(this->MinimumSlots()));
-  return this->Settings.DecodeWholeVolume
-    ? std::min(cached, this->BytesWith(this->WholeVolume()))
-    : cached;
+  return this->Settings.DecodeWholeVolume ? std::min(cached, this->BytesWith(this->WholeVolume()))
+                                          : cached;
 }
 
 //------------------------------------------------------------------------------
@@ -280,21 +281,26 @@ bool ProgressivePipeline::ResizeCache(std::int64_t slots)
   this->Gpu.Dispatch(Stage::CacheReset,
     std::min<std::int64_t>(4096, DivideUp(std::max(slots, this->Extent.CoarseCells), 256)));
   this->CacheAge = this->PassesSubmitted;
+  this->Refusals = 0;
   this->TouchedSlots.clear();
   return true;
 }
 
 // Where an image needs more than fits, and there is room, the cache grows: seldom and by much, as
-// GPUs take long to make memory. Beyond a slot a pixel it does so only where eviction does not help.
+// GPUs take long to make memory. Beyond a slot a pixel it does so, then twofold, only where pass
+// after pass is refused blocks: up to then eviction helps, and another pass costs less than memory.
 // It loses what it holds; rays ask again for what they still need.
-void ProgressivePipeline::GrowCache(const PassRecord& pass, bool refusedBefore)
+void ProgressivePipeline::GrowCache(const PassRecord& pass)
 {
   const std::int64_t most = this->MaximumSlots();
   const std::int64_t needed = std::int64_t(pass.TouchedSlots) + pass.RefusedBlocks;
   const bool small = this->Extent.Slots < this->Extent.Pixels && needed > this->Extent.Slots;
-  if (pass.RefusedBlocks > 0 && (small || refusedBefore) && this->Extent.Slots < most)
+  this->Refusals = pass.RefusedBlocks > 0 ? this->Refusals + 1 : 0;
+  if (this->Refusals > (small ? 0 : MostRefusals) && this->Extent.Slots < most)
   {
-    this->ResizeCache(std::min(std::max(Growth * this->Extent.Slots, 2 * needed), most));
+    const std::int64_t enough =
+      small ? std::max(Growth * this->Extent.Slots, 2 * needed) : 2 * this->Extent.Slots;
+    this->ResizeCache(std::min(enough, most));
   }
 }
 
@@ -305,11 +311,10 @@ std::int64_t ProgressivePipeline::SlotsForRecentImages() const
   {
     return this->Extent.Slots;
   }
-  const std::int64_t most =
-    *std::max_element(this->TouchedSlots.begin(), this->TouchedSlots.end());
+  const std::int64_t most = *std::max_element(this->TouchedSlots.begin(), this->TouchedSlots.end());
   const std::int64_t enough = std::max({ 2 * most, FirstSlots, this->MinimumSlots() });
   return Growth * most < this->Extent.Slots ? std::min(enough, this->Extent.Slots)
-                                       : this->Extent.Slots;
+                                            : this->Extent.Slots;
 }
 
 //------------------------------------------------------------------------------
@@ -334,10 +339,15 @@ bool ProgressivePipeline::SetScene(const SceneBlock& scene, bool newImage)
   this->FillInScene(scene);
   const PipelineExtent before = this->Extent;
   this->Extent.Pixels = static_cast<std::int64_t>(scene.Image[0]) * scene.Image[1];
-  this->Extent.Lit = scene.Lighting[0] > 0;
   this->Extent.Detailed = this->Settings.Detailed;
-  const bool sameImage = before.Pixels == this->Extent.Pixels && before.Lit == this->Extent.Lit &&
-    before.Detailed == this->Extent.Detailed;
+  this->Extent.Lit = scene.Lighting[0] > 0;
+  this->Extent.Translucent = scene.Lighting[1] > 0;
+  this->Extent.Obstructed = scene.Lighting[2] > 0;
+  this->Extent.SeveralIsovalues = scene.Surface[0] > 1;
+  this->Extent.Clipped = scene.Surface[1] > 0;
+  this->Extent.Cropped = scene.Surface[2] != SceneBlock::AllRegions;
+  const bool sameImage =
+    before.Pixels == this->Extent.Pixels && before.GetFeatures() == this->Extent.GetFeatures();
   this->Started = this->Started && sameImage;
   return this->MakeRoom(newImage);
 }
@@ -348,8 +358,8 @@ bool ProgressivePipeline::MakeRoom(bool newImage)
 {
   this->Budget = this->ChooseBudget();
   const PipelineExtent whole = this->WholeVolume();
-  const bool fits = this->BytesWith(whole) <= this->Budget &&
-    256 * whole.Slots <= this->Gpu.GetLargestBuffer();
+  const bool fits =
+    this->BytesWith(whole) <= this->Budget && 256 * whole.Slots <= this->Gpu.GetLargestBuffer();
   const bool cached = !(fits && this->Settings.DecodeWholeVolume);
   const std::int64_t most = this->MaximumSlots();
   if (cached && most == 0)
@@ -376,8 +386,7 @@ bool ProgressivePipeline::MakeRoom(bool newImage)
     this->VolumeLoaded = cached ? this->LoadVolume() : this->LoadWholeVolume();
   }
   return this->GetError().empty() && this->Gpu.Allocate(Lifetime::Image, this->Extent) &&
-    (cached ? this->MakeCache(most, newImage)
-            : this->Gpu.Allocate(Lifetime::Cache, this->Extent));
+    (cached ? this->MakeCache(most, newImage) : this->Gpu.Allocate(Lifetime::Cache, this->Extent));
 }
 
 // The cache begins small, and is left alone while an image is under way.
@@ -424,6 +433,12 @@ void ProgressivePipeline::Start()
   }
   this->Gpu.Fill(Buffer::Hits, 0xFFFFFFFFu);
   this->Gpu.Fill(Buffer::Normals, 0x80008000u);
+  this->Gpu.Fill(Buffer::Layers, 0);
+  if (this->Extent.Obstructed)
+  {
+    const std::int64_t section = this->Extent.SeveralIsovalues ? 3 : 2;
+    this->Gpu.CaptureDepths(this->Scene.Image, Buffer::Hits, 4 * section * this->Extent.Pixels);
+  }
   const std::uint32_t yes = 1;
   this->Gpu.Write(Buffer::Control, offsetof(ControlBlock, NewImage), &yes, sizeof(yes));
   this->Gpu.Dispatch(Stage::PlanPass, 1);
@@ -439,11 +454,11 @@ void ProgressivePipeline::RunPass()
     this->Gpu.DispatchIndirect(Stage::CacheEvict, offsetof(ControlBlock, EvictGroups));
   }
   this->Gpu.DispatchIndirect(Stage::CastRays, offsetof(ControlBlock, CastGroups));
-  if (this->Extent.Cached)
+  if (!this->Extent.IsSinglePass())
   {
     this->Gpu.DispatchIndirect(Stage::CastFewRays, offsetof(ControlBlock, FewGroups));
   }
-  if (this->Extent.Lit)
+  if (this->Extent.Lit || this->Extent.Translucent)
   {
     this->Gpu.DispatchIndirect(Stage::FindNormals, offsetof(ControlBlock, NormalGroups));
   }
@@ -460,22 +475,21 @@ void ProgressivePipeline::RunPass()
 
 // The GPU is always given work ahead of what the CPU knows; passes that turn out not to be needed
 // have no work groups.
-void ProgressivePipeline::RunPasses(
-  int maximum, bool eager, const std::function<bool()>& stop)
+void ProgressivePipeline::RunPasses(int maximum, bool eager, const std::function<bool()>& stop)
 {
   const std::int64_t ahead =
-    eager || this->Gpu.IsSoftware() || !this->Extent.Cached ? 1 : PassesAhead;
-  const std::int64_t last = maximum > 0 ? this->PassesSubmitted + maximum
-                                        : std::numeric_limits<std::int64_t>::max();
+    eager || this->Gpu.IsSoftware() || this->Extent.IsSinglePass() ? 1 : PassesAhead;
+  const std::int64_t last =
+    maximum > 0 ? this->PassesSubmitted + maximum : std::numeric_limits<std::int64_t>::max();
   bool more = this->Remaining > 0;
   while (more || this->PassesKnown < this->PassesSubmitted)
   {
-    while (more && this->PassesSubmitted < this->PassesKnown + ahead &&
-      this->PassesSubmitted < last)
+    while (
+      more && this->PassesSubmitted < this->PassesKnown + ahead && this->PassesSubmitted < last)
     {
       this->RunPass();
     }
-    if (!this->Extent.Cached)
+    if (this->Extent.IsSinglePass())
     {
       this->Remaining = 0; // there is nothing to wait for
       return;
@@ -499,16 +513,14 @@ void ProgressivePipeline::TakeSnapshot()
   {
     TimedPass pass;
     static_cast<PassRecord&>(pass) = snapshot.Records[(total - 1) % PassRecords];
-    const bool gotOn = pass.Pairs > 0 || pass.DecodedBlocks > 0 ||
-      pass.RemainingRays != this->Remaining;
+    const bool gotOn =
+      pass.Pairs > 0 || pass.DecodedBlocks > 0 || pass.RemainingRays != this->Remaining;
     this->PassesWithoutProgress = gotOn ? 0 : this->PassesWithoutProgress + 1;
     this->Remaining = pass.RemainingRays;
-    const bool refusedBefore = this->PassesKnown > this->CacheAge + 1 && !this->Passes.empty() &&
-      this->Passes.back().RefusedBlocks > 0;
     this->Passes.push_back(pass);
     if (this->PassesKnown > this->CacheAge)
     {
-      this->GrowCache(pass, refusedBefore);
+      this->GrowCache(pass);
     }
   }
   if (this->Remaining == 0)
@@ -593,11 +605,40 @@ double ProgressivePipeline::GetCompletedFraction() const
     : 0.0;
 }
 
+// One section of Hits.glsl.
+std::vector<std::uint32_t> ProgressivePipeline::ReadHits(std::int64_t section)
+{
+  std::vector<std::uint32_t> words(static_cast<std::size_t>(this->Extent.Pixels));
+  this->Gpu.Read(
+    Buffer::Hits, 4 * section * this->Extent.Pixels, words.data(), 4 * this->Extent.Pixels);
+  return words;
+}
+
 std::vector<std::uint32_t> ProgressivePipeline::ReadHitKeys()
 {
-  std::vector<std::uint32_t> keys(static_cast<std::size_t>(this->Extent.Pixels));
-  this->Gpu.Read(Buffer::Hits, 0, keys.data(), 4 * this->Extent.Pixels);
-  return keys;
+  return this->ReadHits(0);
+}
+
+std::vector<float> ProgressivePipeline::ReadHitDepths()
+{
+  const std::vector<std::uint32_t> words = this->ReadHits(1);
+  std::vector<float> depths(words.size());
+  std::memcpy(depths.data(), words.data(), 4 * words.size());
+  return depths;
+}
+
+PixelHit ProgressivePipeline::ReadHit(std::int64_t pixel)
+{
+  PixelHit hit;
+  const auto read = [this, pixel](std::int64_t section, void* word)
+  { this->Gpu.Read(Buffer::Hits, 4 * (section * this->Extent.Pixels + pixel), word, 4); };
+  read(0, &hit.Key);
+  read(1, &hit.Depth);
+  if (this->Extent.SeveralIsovalues)
+  {
+    read(2, &hit.Surface);
+  }
+  return hit;
 }
 
 bool ProgressivePipeline::DecodeVolume(std::vector<float>& values)

@@ -9,6 +9,7 @@
 
 #include "PipelineResources.h"
 
+#include <array>
 #include <chrono>
 #include <functional>
 #include <string>
@@ -35,6 +36,15 @@ struct PipelineSettings
 struct TimedPass : PassRecord
 {
   double ElapsedMilliseconds = 0.0; ///< from the start of the image to the end of the pass
+};
+
+/// What a pixel's ray has met. Of a translucent image the key and the surface are those of the last
+/// hit.
+struct PixelHit
+{
+  std::uint32_t Key = 0xFFFFFFFFu; ///< none
+  float Depth = 0.0f;              ///< parameter t of the first hit
+  std::uint32_t Surface = 0;       ///< number of the isovalue among those that show
 };
 
 class ProgressivePipeline
@@ -68,7 +78,9 @@ public:
   /// after a pass. With `eager` no pass is submitted before the last one is known to be needed.
   void RunPasses(int maximum, bool eager, const std::function<bool()>& stop);
   /// Draw the image with its depth into the current framebuffer and viewport.
-  void Composite() { this->Gpu.DrawComposite(); }
+  void Composite() { this->Gpu.Draw(Stage::Composite); }
+  /// Draw identifiers instead, for a vtkHardwareSelector; see Select.frag.
+  void Select(const std::array<float, 4>& selected) { this->Gpu.Draw(Stage::Select, &selected); }
   /// Wait for what the passes tell of themselves.
   void CompleteStatistics();
 
@@ -83,8 +95,11 @@ public:
   const SceneBlock& GetScene() const { return this->Scene; }
   const std::string& GetError() const { return this->Gpu.GetError(); }
 
-  /// Hit keys of all pixels, rows from the bottom (see Rays.glsl).
+  ///@{ Of all pixels, rows from the bottom, or of one: what Hits.glsl holds.
   std::vector<std::uint32_t> ReadHitKeys();
+  std::vector<float> ReadHitDepths();
+  PixelHit ReadHit(std::int64_t pixel);
+  ///@}
   /// Decode the whole volume with the pipeline's own decoder; `values`: 64 for every block.
   bool DecodeVolume(std::vector<float>& values);
 
@@ -105,9 +120,10 @@ private:
   bool LoadVolume();
   bool LoadWholeVolume();
   bool ResizeCache(std::int64_t slots);
-  void GrowCache(const PassRecord& pass, bool refusedBefore);
+  void GrowCache(const PassRecord& pass);
   std::int64_t SlotsForRecentImages() const;
 
+  std::vector<std::uint32_t> ReadHits(std::int64_t section);
   void RunPass();
   void MarkPassEnd();
   void TakeSnapshot();
@@ -127,6 +143,7 @@ private:
   std::int64_t PassesSubmitted = 0;
   std::int64_t PassesKnown = 0;
   std::int64_t CacheAge = 0; ///< the pass before which the cache was made
+  int Refusals = 0;          ///< passes in a row, of this cache, that were refused blocks
   int PassesWithoutProgress = 0;
   std::vector<std::int64_t> TouchedSlots; ///< of the last complete images, newest last
 

@@ -4,6 +4,8 @@
 // block it is in: nothing accumulates, nothing is derived back from t, and neighbouring cells share their
 // face's t to the last bit.
 
+#include "Hits.glsl"
+
 #define HIT_STEPS 4294967040.0LF // hit keys: the ray's way through the volume in 32-bit fixed point
 
 struct Ray
@@ -44,6 +46,32 @@ dvec2 PixelCentre(uint pixel)
   return dvec2(double(pixel % uint(scene.Image.x)), double(pixel / uint(scene.Image.x))) + 0.5LF;
 }
 
+#ifdef CLIPPED
+void ClipRay(inout Ray ray)
+{
+  for (int i = 0; i < scene.Surface.y; ++i)
+  {
+    dvec4 plane = scene.ClippingPlanes[i];
+    precise double at = dot(plane.xyz, ray.Origin) + plane.w;
+    precise double along = dot(plane.xyz, ray.Direction);
+    precise double t = -at * FiniteInverse(along);
+    ray.Enter = along > 0.0LF ? max(ray.Enter, t) : ray.Enter;
+    ray.Leave = along < 0.0LF ? min(ray.Leave, t) : ray.Leave;
+    ray.Leave = along == 0.0LF && at < 0.0LF ? ray.Enter - 1.0LF : ray.Leave;
+  }
+}
+#endif
+
+#if defined(OBSTRUCTED) && defined(BINDING_HITS)
+// Parameter at which a ray meets opaque geometry of this depth in the window.
+double ObstacleT(float depth)
+{
+  double z = 2.0LF * double(depth) - 1.0LF;
+  dvec4 terms = dvec4(scene.DepthTerms);
+  return (terms.x - z * terms.z) / (z * terms.w - terms.y);
+}
+#endif
+
 // The ray through the centre of a pixel.
 Ray CameraRay(uint pixel)
 {
@@ -60,6 +88,12 @@ Ray CameraRay(uint pixel)
   dvec3 last = PlanesT(ray, scene.LastDrawn.xyz);
   ray.Enter = max(LargestOf(min(first, last)), scene.RayRange.x);
   ray.Leave = min(SmallestOf(max(first, last)), scene.RayRange.y);
+#ifdef CLIPPED
+  ClipRay(ray);
+#endif
+#if defined(OBSTRUCTED) && defined(BINDING_HITS)
+  ray.Leave = min(ray.Leave, ObstacleT(ObstacleOf(pixel)));
+#endif
   return ray;
 }
 
@@ -106,8 +140,7 @@ uint TileOrderOf(uint pixel)
 // Blocks that each of so many rays may ask for (N_spec, section 4).
 uint Speculation(uint rays)
 {
-  uint pixels = uint(scene.Image.x * scene.Image.y);
-  return clamp(pixels / (scene.Policy.y * max(rays, 1u)), 1u, scene.Cache.z);
+  return clamp(ImagePixels() / (scene.Policy.y * max(rays, 1u)), 1u, scene.Cache.z);
 }
 
 // ---- hit keys: unsigned integers in the order of t

@@ -7,11 +7,15 @@
 #define NO_NORMAL 0x80008000u // of a pixel that has none yet; no packed normal has these bits
 #define MAX_GROUPS 65535u   // OpenGL 4.3's guaranteed number of work groups on an axis
 #define MAX_LIGHTS 16
+#define MAX_ISOVALUES 16
+#define MAX_CLIPPING_PLANES 16
 
 struct Light
 {
   vec4 Place; // view coordinates: position (w = 1) or direction towards the light (w = 0)
-  vec4 Color; // colour times intensity
+  vec4 Color; // colour times intensity; w: the exponent of a spot light
+  vec4 Axis;  // of a spot light, in view coordinates; w: cosine of its cone's angle, or -2 where it has none
+  vec4 Fading; // with distance: constant, linear, quadratic; w unused
 };
 
 layout(std140, binding = 0) uniform Scene
@@ -23,6 +27,9 @@ layout(std140, binding = 0) uniform Scene
   dvec4 EyeOrigin[3]; // the same in view coordinates
   dvec4 EyeDirection[3];
   dvec4 RayRange;    // near and far clipping distance
+  dvec4 ClippingPlanes[MAX_CLIPPING_PLANES]; // index space: the surface is drawn where xyz p + w >= 0
+  dvec4 CroppingLow;  // index space: the planes that part the volume into 3^3 regions
+  dvec4 CroppingHigh;
   ivec4 FirstDrawn;  // the surface is drawn between these samples; a piece of a volume has more, for normals
   ivec4 LastDrawn;
   ivec4 Samples;     // samples per axis; w: bits per block of the stream
@@ -31,15 +38,25 @@ layout(std140, binding = 0) uniform Scene
   ivec4 Image;       // width and height of the viewport, its origin in the window
   uvec4 Cache;       // slots, pages of the block map, speculation limit, 1 where it cannot grow
   uvec4 Policy;      // few rays: as many pixels a ray; pixels that a ray has for each block it looks ahead
-  vec4 Isovalue;     // the isovalue as a sum of two floats
+  ivec4 Surface;     // number of isovalues, of clipping planes, bits of the regions that are drawn
+  vec4 Isovalues[MAX_ISOVALUES]; // each as a sum of two floats
   mat4 NormalMatrix; // index-space gradient to view-space normal (3x3)
   vec4 DepthTerms; // clip-space z and w as functions of t: z = x + y t, w = z + w t
-  vec4 Color;      // of the isosurface; w unused
+  vec4 Colors[MAX_ISOVALUES]; // of the isosurfaces; w: opacity
   vec4 Material;   // ambient, diffuse, specular, specular power
-  ivec4 Lighting;  // number of lights (0: unlit)
+  ivec4 Lighting;  // number of lights (0: unlit); 1: an isosurface is translucent; 1: opaque geometry hides it;
+                   // 1: both sides are lit
   Light Lights[MAX_LIGHTS];
 }
 scene;
+
+// What follows from what the scene needs.
+#if defined(TRANSLUCENT) || defined(CROPPED)
+#define MANY_CROSSINGS // not every crossing of a ray with a surface is its hit
+#endif
+#if defined(HAS_RAYS) && (defined(LIT) || defined(TRANSLUCENT))
+#define HIT_LIST // hits go on, to be lit or blended
+#endif
 
 // Dispatches are folded into two dimensions where one would exceed MAX_GROUPS.
 #ifdef COMPUTE

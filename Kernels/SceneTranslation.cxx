@@ -13,8 +13,11 @@
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkPiecewiseFunction.h"
+#include "vtkPlane.h"
+#include "vtkPlaneCollection.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
+#include "vtkVolumeMapper.h"
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
@@ -139,67 +142,159 @@ void TranslateNormals(vtkMatrix4x4* eyeToIndex, SceneBlock& scene)
   }
 }
 
+void TranslateLight(vtkLight* light, vtkMatrix4x4* worldToEye, SceneLight& place)
+{
+  double position[4], focus[4], way[4] = {};
+  light->GetTransformedPosition(position);
+  light->GetTransformedFocalPoint(focus);
+  const bool positional = light->GetPositional();
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    way[axis] = focus[axis] - position[axis];
+    position[axis] = positional ? position[axis] : -way[axis];
+  }
+  position[3] = positional ? 1.0 : 0.0;
+  worldToEye->MultiplyPoint(position, position);
+  worldToEye->MultiplyPoint(way, way);
+  vtkMath::Normalize(way);
+  if (!positional)
+  {
+    vtkMath::Normalize(position);
+  }
+  const double* color = light->GetDiffuseColor();
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    place.Place[axis] = static_cast<float>(position[axis]);
+    place.Axis[axis] = static_cast<float>(way[axis]);
+    place.Color[axis] = static_cast<float>(color[axis] * light->GetIntensity());
+    place.Fading[axis] = static_cast<float>(light->GetAttenuationValues()[axis]);
+  }
+  const bool spot = positional && light->GetConeAngle() < 90.0;
+  place.Place[3] = static_cast<float>(position[3]);
+  place.Color[3] = static_cast<float>(light->GetExponent());
+  place.Axis[3] =
+    spot ? static_cast<float>(std::cos(vtkMath::RadiansFromDegrees(light->GetConeAngle()))) : -2.0f;
+}
+
 void TranslateLights(vtkRenderer* renderer, vtkMatrix4x4* worldToEye, SceneBlock& scene)
 {
   vtkCollectionSimpleIterator iterator;
   vtkLightCollection* lights = renderer->GetLights();
   lights->InitTraversal(iterator);
-  int count = 0;
+  int& count = scene.Lighting[0];
   for (vtkLight* light = lights->GetNextLight(iterator); light;
        light = lights->GetNextLight(iterator))
   {
-    if (!light->GetSwitch() || count == SceneBlock::MaximumLights)
+    if (light->GetSwitch() && count < SceneBlock::MaximumLights)
+    {
+      TranslateLight(light, worldToEye, scene.Lights[count++]);
+    }
+  }
+}
+
+// Isovalues that show, with their colours and opacities from the transfer functions.
+void TranslateIsovalues(vtkVolumeProperty* property, SceneBlock& scene)
+{
+  vtkContourValues* values = property->GetIsoSurfaceValues();
+  int& count = scene.Surface[0];
+  for (int i = 0; i < values->GetNumberOfContours(); ++i)
+  {
+    const double value = values->GetValue(i);
+    const double opacity =
+      std::min(std::max(property->GetScalarOpacity()->GetValue(value), 0.0), 1.0);
+    if (opacity == 0.0 || count == SceneBlock::MaximumIsovalues)
     {
       continue;
     }
-    double position[4], focus[4], place[4];
-    light->GetTransformedPosition(position);
-    light->GetTransformedFocalPoint(focus);
-    const double w = light->GetPositional() ? 1.0 : 0.0;
-    for (int axis = 0; axis < 3; ++axis)
+    double color[3];
+    if (property->GetColorChannels() == 1)
     {
-      place[axis] = light->GetPositional() ? position[axis] : position[axis] - focus[axis];
+      std::fill(color, color + 3, property->GetGrayTransferFunction()->GetValue(value));
     }
-    place[3] = w;
-    worldToEye->MultiplyPoint(place, place);
-    const double* color = light->GetDiffuseColor();
-    for (int axis = 0; axis < 3; ++axis)
+    else
     {
-      scene.Lights[count].Place[axis] = static_cast<float>(place[axis]);
-      scene.Lights[count].Color[axis] = static_cast<float>(color[axis] * light->GetIntensity());
+      property->GetRGBTransferFunction()->GetColor(value, color);
     }
-    scene.Lights[count].Place[3] = static_cast<float>(w);
+    scene.Isovalues[count][0] = static_cast<float>(value);
+    scene.Isovalues[count][1] = static_cast<float>(value - scene.Isovalues[count][0]);
+    std::copy(color, color + 3, scene.Colors[count]);
+    scene.Colors[count][3] = static_cast<float>(opacity);
+    scene.Lighting[1] |= opacity < 1.0 ? 1 : 0;
     ++count;
   }
-  scene.Lighting[0] = count;
+  if (count == 0) // no ray meets anything
+  {
+    scene.RayRange[0] = 1.0;
+    scene.RayRange[1] = 0.0;
+  }
 }
 
-void TranslateLook(vtkRenderer* renderer, vtkVolumeProperty* property, double isovalue,
-  vtkMatrix4x4* worldToEye, SceneBlock& scene)
+// The mapper's planes are in world coordinates.
+void TranslateClipping(vtkVolumeMapper* mapper, vtkMatrix4x4* worldToIndex, SceneBlock& scene)
 {
-  double color[3];
-  if (property->GetColorChannels() == 1)
+  vtkPlaneCollection* planes = mapper->GetClippingPlanes();
+  vtkNew<vtkMatrix4x4> indexToWorld;
+  vtkMatrix4x4::Invert(worldToIndex, indexToWorld);
+  const int count = planes ? planes->GetNumberOfItems() : 0;
+  for (int i = 0; i < count && i < SceneBlock::MaximumClippingPlanes; ++i)
   {
-    std::fill(color, color + 3, property->GetGrayTransferFunction()->GetValue(isovalue));
+    vtkPlane* plane = planes->GetItem(i);
+    double normal[3], origin[3];
+    plane->GetNormal(normal);
+    plane->GetOrigin(origin);
+    double terms[4] = { normal[0], normal[1], normal[2], -vtkMath::Dot(normal, origin) };
+    double* translated = scene.ClippingPlanes[scene.Surface[1]++];
+    for (int axis = 0; axis < 4; ++axis)
+    {
+      for (int row = 0; row < 4; ++row)
+      {
+        translated[axis] += terms[row] * indexToWorld->GetElement(row, axis);
+      }
+    }
   }
-  else
+}
+
+// The planes between the regions lie in the image's own axes, whatever its direction matrix is.
+void TranslateCropping(
+  vtkVolumeMapper* mapper, vtkImageData* image, vtkCompressedVolume* compressed, SceneBlock& scene)
+{
+  if (!mapper->GetCropping())
   {
-    property->GetRGBTransferFunction()->GetColor(isovalue, color);
+    return;
   }
+  const double shift = compressed->GetAssociation() == vtkCompressedVolume::CellData ? 0.5 : 0.0;
+  const double* planes = mapper->GetCroppingRegionPlanes();
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double first = compressed->GetExtent()[2 * axis] + shift;
+    const double origin = image->GetOrigin()[axis], spacing = image->GetSpacing()[axis];
+    const double low = (planes[2 * axis] - origin) / spacing - first;
+    const double high = (planes[2 * axis + 1] - origin) / spacing - first;
+    scene.CroppingLow[axis] = std::min(low, high);
+    scene.CroppingHigh[axis] = std::max(low, high);
+  }
+  scene.Surface[2] = mapper->GetCroppingRegionFlags() & SceneBlock::AllRegions;
+}
+
+void TranslateLook(
+  vtkRenderer* renderer, vtkVolumeProperty* property, vtkMatrix4x4* worldToEye, SceneBlock& scene)
+{
   scene.Material[0] = static_cast<float>(property->GetAmbient());
   scene.Material[1] = static_cast<float>(property->GetDiffuse());
   scene.Material[2] = static_cast<float>(property->GetSpecular());
   scene.Material[3] = static_cast<float>(property->GetSpecularPower());
-  double brightness = 1.0;
-  if (property->GetShade())
+  if (!property->GetShade())
   {
-    TranslateLights(renderer, worldToEye, scene);
-    brightness =
-      scene.Lighting[0] > 0 ? 1.0 : property->GetAmbient(); // in the dark no normal is needed
+    return;
   }
-  for (int i = 0; i < 3; ++i)
+  TranslateLights(renderer, worldToEye, scene);
+  scene.Lighting[3] = renderer->GetTwoSidedLighting() ? 1 : 0;
+  for (int i = 0; i < scene.Surface[0] && scene.Lighting[0] == 0; ++i)
   {
-    scene.Color[i] = static_cast<float>(brightness * color[i]);
+    for (int channel = 0; channel < 3; ++channel) // in the dark no normal is needed
+    {
+      scene.Colors[i][channel] *= scene.Material[0];
+    }
   }
 }
 
@@ -217,8 +312,8 @@ bool NearlySame(const double* a, const double* b)
 constexpr std::size_t ExactBegins = offsetof(SceneBlock, FirstDrawn);
 }
 
-SceneBlock TranslateScene(
-  vtkRenderer* renderer, vtkVolume* volume, vtkImageData* image, vtkCompressedVolume* compressed)
+SceneBlock TranslateScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMapper* mapper,
+  vtkImageData* image, vtkCompressedVolume* compressed)
 {
   SceneBlock scene;
   renderer->GetTiledSizeAndOrigin(
@@ -227,25 +322,25 @@ SceneBlock TranslateScene(
   vtkMatrix4x4* projection =
     camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1, 1);
   vtkMatrix4x4* worldToEye = camera->GetModelViewTransformMatrix();
-  vtkNew<vtkMatrix4x4> eyeToIndex;
-  SamplesToWorld(volume, image, compressed, eyeToIndex);
-  vtkMatrix4x4::Multiply4x4(worldToEye, eyeToIndex, eyeToIndex);
+  vtkNew<vtkMatrix4x4> indexToWorld, worldToIndex, eyeToIndex;
+  SamplesToWorld(volume, image, compressed, indexToWorld);
+  vtkMatrix4x4::Invert(indexToWorld, worldToIndex);
+  vtkMatrix4x4::Multiply4x4(worldToEye, indexToWorld, eyeToIndex);
   eyeToIndex->Invert();
 
   TranslateRays(MakeEyeRays(projection, scene.Image[0], scene.Image[1]), eyeToIndex, scene);
   camera->GetClippingRange(scene.RayRange);
   TranslatePart(image, compressed, scene);
-  vtkVolumeProperty* property = volume->GetProperty();
-  const double isovalue = property->GetIsoSurfaceValues()->GetValue(0);
-  scene.Isovalue[0] = static_cast<float>(isovalue);
-  scene.Isovalue[1] = static_cast<float>(isovalue - scene.Isovalue[0]);
+  TranslateIsovalues(volume->GetProperty(), scene);
+  TranslateClipping(mapper, worldToIndex, scene);
+  TranslateCropping(mapper, image, compressed, scene);
 
   TranslateNormals(eyeToIndex, scene);
   scene.DepthTerms[0] = static_cast<float>(projection->GetElement(2, 3));
   scene.DepthTerms[1] = static_cast<float>(-projection->GetElement(2, 2));
   scene.DepthTerms[2] = static_cast<float>(projection->GetElement(3, 3));
   scene.DepthTerms[3] = static_cast<float>(-projection->GetElement(3, 2));
-  TranslateLook(renderer, property, isovalue, worldToEye, scene);
+  TranslateLook(renderer, volume->GetProperty(), worldToEye, scene);
   return scene;
 }
 
@@ -259,8 +354,20 @@ bool SameHits(const SceneBlock& a, const SceneBlock& b)
       return false;
     }
   }
-  return NearlySame(a.RayRange, b.RayRange) && std::equal(a.Image, a.Image + 4, b.Image) &&
-    std::equal(a.Isovalue, a.Isovalue + 2, b.Isovalue);
+  return NearlySame(a.RayRange, b.RayRange) &&
+    std::memcmp(a.ClippingPlanes, b.ClippingPlanes, sizeof(a.ClippingPlanes)) == 0 &&
+    std::memcmp(a.CroppingLow, b.CroppingLow, sizeof(a.CroppingLow)) == 0 &&
+    std::memcmp(a.CroppingHigh, b.CroppingHigh, sizeof(a.CroppingHigh)) == 0 &&
+    std::equal(a.Image, a.Image + 4, b.Image) && std::equal(a.Surface, a.Surface + 4, b.Surface) &&
+    std::memcmp(a.Isovalues, b.Isovalues, sizeof(a.Isovalues)) == 0;
+}
+
+bool SameLook(const SceneBlock& a, const SceneBlock& b)
+{
+  const char* look = reinterpret_cast<const char*>(a.NormalMatrix);
+  const std::size_t begin = offsetof(SceneBlock, NormalMatrix);
+  return std::memcmp(look, reinterpret_cast<const char*>(&b) + begin, sizeof(SceneBlock) - begin) ==
+    0;
 }
 
 void KeepHits(const SceneBlock& from, SceneBlock& to)
@@ -268,30 +375,75 @@ void KeepHits(const SceneBlock& from, SceneBlock& to)
   std::memcpy(&to, &from, ExactBegins);
 }
 
-float HitDistance(const SceneBlock& scene, int x, int y, std::uint32_t key)
+namespace
+{
+// The base of a pixel's ray, or its direction: see Scene.glsl.
+double AtPixel(const double terms[3][4], int axis, double px, double py)
+{
+  return terms[0][axis] + px * terms[1][axis] + py * terms[2][axis];
+}
+
+double FiniteInverse(double d)
+{
+  return std::abs(d) > 1e-290 ? 1.0 / d : 1e290;
+}
+
+// As in Rays.glsl.
+void ClipRay(const SceneBlock& scene, double px, double py, double& enter, double& leave)
+{
+  for (int i = 0; i < scene.Surface[1]; ++i)
+  {
+    const double* plane = scene.ClippingPlanes[i];
+    double at = plane[3], along = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      at += plane[axis] * AtPixel(scene.RayOrigin, axis, px, py);
+      along += plane[axis] * AtPixel(scene.RayDirection, axis, px, py);
+    }
+    const double t = -at * FiniteInverse(along);
+    enter = along > 0.0 ? std::max(enter, t) : enter;
+    leave = along < 0.0 ? std::min(leave, t) : leave;
+  }
+}
+}
+
+double HitParameter(const SceneBlock& scene, int x, int y, std::uint32_t key)
 {
   if (key == 0xFFFFFFFFu)
   {
-    return std::numeric_limits<float>::infinity();
+    return std::numeric_limits<double>::infinity();
   }
   const double px = x + 0.5, py = y + 0.5;
   double enter = scene.RayRange[0], leave = scene.RayRange[1];
-  double eyeLength = 0.0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double origin =
-      scene.RayOrigin[0][axis] + px * scene.RayOrigin[1][axis] + py * scene.RayOrigin[2][axis];
-    const double direction = scene.RayDirection[0][axis] + px * scene.RayDirection[1][axis] +
-      py * scene.RayDirection[2][axis];
-    const double inverse = std::abs(direction) > 1e-290 ? 1.0 / direction : 1e290;
+    const double origin = AtPixel(scene.RayOrigin, axis, px, py);
+    const double inverse = FiniteInverse(AtPixel(scene.RayDirection, axis, px, py));
     const double first = (scene.FirstDrawn[axis] - origin) * inverse;
     const double last = (scene.LastDrawn[axis] - origin) * inverse;
     enter = std::max(enter, std::min(first, last));
     leave = std::min(leave, std::max(first, last));
-    const double eye = scene.EyeDirection[0][axis] + px * scene.EyeDirection[1][axis] +
-      py * scene.EyeDirection[2][axis];
-    eyeLength += eye * eye;
   }
-  const double t = enter + (key + 0.5) / 4294967040.0 * (leave - enter);
-  return static_cast<float>(t * std::sqrt(eyeLength));
+  ClipRay(scene, px, py, enter, leave);
+  return enter + (key + 0.5) / 4294967040.0 * (leave - enter);
+}
+
+double RayLength(const SceneBlock& scene, int x, int y, double t)
+{
+  double squares = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double eye = AtPixel(scene.EyeDirection, axis, x + 0.5, y + 0.5);
+    squares += eye * eye;
+  }
+  return t * std::sqrt(squares);
+}
+
+void EyePosition(const SceneBlock& scene, int x, int y, double t, double position[3])
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    position[axis] = AtPixel(scene.EyeOrigin, axis, x + 0.5, y + 0.5) +
+      t * AtPixel(scene.EyeDirection, axis, x + 0.5, y + 0.5);
+  }
 }

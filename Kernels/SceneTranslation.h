@@ -13,22 +13,29 @@ class vtkCompressedVolume;
 class vtkImageData;
 class vtkRenderer;
 class vtkVolume;
+class vtkVolumeMapper;
 
-/// Rays, image, isovalue, lights and material of a volume seen by a renderer's camera. Samples,
-/// Blocks, CoarseCells and Cache are the pipeline's own business.
-SceneBlock TranslateScene(
-  vtkRenderer* renderer, vtkVolume* volume, vtkImageData* image, vtkCompressedVolume* compressed);
+/// Rays, image, isovalues, clipping, cropping, lights and material of a volume seen by a renderer's
+/// camera. Samples, Blocks, CoarseCells and Cache are the pipeline's own business.
+SceneBlock TranslateScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMapper* mapper,
+  vtkImageData* image, vtkCompressedVolume* compressed);
 
 /// Do two scenes have the same hits? Cameras are compared with a relative tolerance of 1e-7:
 /// vtkWindowToImageFilter perturbs the view angle by rounding.
 bool SameHits(const SceneBlock& a, const SceneBlock& b);
 
+/// Do they have the same colours, opacities, lights and material?
+bool SameLook(const SceneBlock& a, const SceneBlock& b);
+
 /// Copy what hits depend on.
 void KeepHits(const SceneBlock& from, SceneBlock& to);
 
-/// Distance in world units from the camera (in parallel projection: from its plane) to the hit that
-/// a key of Rays.glsl stands for; infinity for no hit. `x`, `y`: pixel, from the viewport's bottom
-/// left.
-float HitDistance(const SceneBlock& scene, int x, int y, std::uint32_t key);
+///@{ Of a pixel, from the viewport's bottom left: the ray's parameter at the hit that a key of
+/// Rays.glsl stands for, infinity for no hit; the distance in world units of parameter t from the
+/// camera (in parallel projection: from its plane); the place in eye coordinates.
+double HitParameter(const SceneBlock& scene, int x, int y, std::uint32_t key);
+double RayLength(const SceneBlock& scene, int x, int y, double t);
+void EyePosition(const SceneBlock& scene, int x, int y, double t, double position[3]);
+///@}
 
 #endif

@@ -30,11 +30,29 @@ double BlockExit(Ray ray, ivec3 block)
 }
 
 // Does a range hold both a value below the isovalue and one that is not?
+bool Straddles(float low, float high, int surface)
+{
+  vec4 isovalue = scene.Isovalues[surface];
+  precise float below = (low - isovalue.x) - isovalue.y;
+  precise float above = (high - isovalue.x) - isovalue.y;
+  return below < 0.0 && above >= 0.0;
+}
+
+// The same for any of the isovalues.
 bool Straddles(float low, float high)
 {
-  precise float below = (low - scene.Isovalue.x) - scene.Isovalue.y;
-  precise float above = (high - scene.Isovalue.x) - scene.Isovalue.y;
-  return below < 0.0 && above >= 0.0;
+#ifdef SEVERAL_ISOVALUES
+  for (int i = 0; i < scene.Surface.x; ++i)
+  {
+    if (Straddles(low, high, i))
+    {
+      return true;
+    }
+  }
+  return false;
+#else
+  return Straddles(low, high, 0);
+#endif
 }
 
 // Where the ray crosses the plane behind which it leaves `block`, at or before parameter t, it moves on.
@@ -94,6 +112,28 @@ bool SkipCoarseCell(Ray ray, inout ivec3 block)
   return InGrid(block);
 }
 
+#ifdef CROPPED
+// Number of the cropping region that a point lies in, in vtkVolumeMapper's order.
+int CroppingRegion(dvec3 point)
+{
+  ivec3 side =
+    ivec3(greaterThan(point, scene.CroppingLow.xyz)) + ivec3(greaterThan(point, scene.CroppingHigh.xyz));
+  return side.x + 3 * side.y + 9 * side.z;
+}
+
+bool Drawn(int region)
+{
+  return (scene.Surface.z >> region & 1) != 0;
+}
+
+// Does a block lie in one region, as a whole, which is not drawn?
+bool OutOfSight(ivec3 block)
+{
+  int region = CroppingRegion(dvec3(4 * block));
+  return region == CroppingRegion(dvec3(4 * block + 4)) && !Drawn(region);
+}
+#endif
+
 // The macrocell that the ray is in.
 struct GridCursor
 {
@@ -118,6 +158,12 @@ void MoveCursor(inout GridCursor at, ivec3 coarse)
 
 bool BlockActive(GridCursor at, ivec3 block)
 {
+#ifdef CROPPED
+  if (OutOfSight(block))
+  {
+    return false;
+  }
+#endif
   uint local = LocalIndex(block);
   uint word = macrocells[at.Index].Ranges[local >> 1];
   uint range = (local & 1u) == 0u ? word & 0xFFFFu : word >> 16;

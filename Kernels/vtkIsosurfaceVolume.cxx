@@ -3,6 +3,7 @@
 #include "vtkIsosurfaceVolume.h"
 
 #include "vtkObjectFactory.h"
+#include "vtkProgressiveIsosurfaceMapper.h"
 
 vtkStandardNewMacro(vtkIsosurfaceVolume);
 
@@ -13,10 +14,14 @@ void vtkIsosurfaceVolume::PrintSelf(ostream& os, vtkIndent indent)
 
 int vtkIsosurfaceVolume::RenderOpaqueGeometry(vtkViewport* viewport)
 {
-  return this->Superclass::RenderVolumetricGeometry(viewport);
+  return vtkProgressiveIsosurfaceMapper::IsTranslucent(this->GetProperty())
+    ? 0
+    : this->Superclass::RenderVolumetricGeometry(viewport);
 }
 
-int vtkIsosurfaceVolume::RenderVolumetricGeometry(vtkViewport* vtkNotUsed(viewport))
+int vtkIsosurfaceVolume::RenderVolumetricGeometry(vtkViewport* viewport)
 {
-  return 0;
+  return vtkProgressiveIsosurfaceMapper::IsTranslucent(this->GetProperty())
+    ? this->Superclass::RenderVolumetricGeometry(viewport)
+    : 0;
 }

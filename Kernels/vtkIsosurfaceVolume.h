@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkIsosurfaceVolume
- * @brief   a vtkVolume that is drawn with the opaque geometry
+ * @brief   a vtkVolume that is drawn with the opaque geometry where its isosurfaces are opaque
  *
  * An opaque isosurface belongs in the renderer's opaque pass: drawn with the volumes, after the
  * translucent geometry, it would overwrite what is translucent in front of it. This prop draws its
- * mapper in the opaque pass and is otherwise a vtkVolume.
+ * mapper in the opaque pass, or with the volumes where its property makes one of the isosurfaces
+ * translucent, and is otherwise a vtkVolume.
  *
  * @sa vtkProgressiveIsosurfaceMapper
  */
@@ -25,8 +26,7 @@ public:
 
   ///@{
   /**
-   * The opaque pass draws the mapper, the volumetric pass nothing. Return whether anything was
-   * drawn.
+   * One of them draws the mapper. Return whether anything was drawn.
    */
   int RenderOpaqueGeometry(vtkViewport* viewport) override;
   int RenderVolumetricGeometry(vtkViewport* viewport) override;

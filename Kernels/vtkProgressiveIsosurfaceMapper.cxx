@@ -6,21 +6,29 @@
 #include "SceneTranslation.h"
 #include "vtkProgressiveIsosurfaceStatistics.h"
 
+#include "vtkCamera.h"
 #include "vtkCellData.h"
 #include "vtkCommand.h"
 #include "vtkCompressedVolume.h"
 #include "vtkContourValues.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
+#include "vtkHardwareSelector.h"
 #include "vtkImageData.h"
 #include "vtkImageZFPCompress.h"
 #include "vtkInformation.h"
+#include "vtkLight.h"
+#include "vtkLightCollection.h"
 #include "vtkMath.h"
+#include "vtkMatrix4x4.h"
 #include "vtkObjectFactory.h"
 #include "vtkOpenGLRenderWindow.h"
 #include "vtkOpenGLShaderCache.h"
 #include "vtkOpenGLState.h"
+#include "vtkPiecewiseFunction.h"
+#include "vtkPlaneCollection.h"
 #include "vtkPointData.h"
+#include "vtkPropCollection.h"
 #include "vtkRenderWindowInteractor.h"
 #include "vtkRenderer.h"
 #include "vtkTable.h"
@@ -30,9 +38,12 @@
 #include "vtkWeakPointer.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <map>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace
@@ -93,10 +104,13 @@ public:
   ~Internals();
 
   bool UpdateVolume();
+  bool CheckLimits(vtkRenderer* renderer, vtkVolume* volume);
   bool BindWindow(vtkOpenGLRenderWindow* window);
   void HandOverVolume();
   bool UpdateScene(vtkRenderer* renderer, vtkVolume* volume);
   bool Refine(vtkOpenGLRenderWindow* window);
+  bool Complete();
+  void Select(vtkHardwareSelector* selector, vtkOpenGLRenderWindow* window);
   void Composite(vtkOpenGLRenderWindow* window);
   void RequestRender(vtkOpenGLRenderWindow* window);
   void FillStatistics();
@@ -119,7 +133,11 @@ public:
 
   SceneBlock Scene;
   bool HaveScene = false;
-  bool CacheToEmpty = false; // at the next render, when the context is current
+  vtkNew<vtkMatrix4x4> EyeToWorld;        // of Scene
+  std::pair<int, vtkMTimeType> Obstacles; // of Scene: how many props, and when they last changed
+  std::pair<vtkRenderer*, int> View;      // renderer and eye of the last render
+  int RendersOfView = 0;                  // since another view was rendered
+  bool CacheToEmpty = false;              // at the next render, when the context is current
   double TotalMilliseconds = 0.0;
 
   vtkWeakPointer<vtkRenderWindowInteractor> Interactor;
@@ -129,6 +147,7 @@ public:
 private:
   vtkDataArray* FindArray(vtkImageData* image, bool& cellData);
   vtkSmartPointer<vtkImageData> Compress(vtkImageData* image, vtkDataArray* array, bool cellData);
+  std::pair<int, vtkMTimeType> FindObstacles(vtkRenderer* renderer, vtkVolume* volume) const;
   bool MayRefineLater(vtkOpenGLRenderWindow* window) const;
   void OnTimer(vtkObject*, unsigned long, void* data);
 };
@@ -140,6 +159,38 @@ vtkProgressiveIsosurfaceMapper::Internals::~Internals()
   {
     this->Interactor->RemoveObserver(this->TimerObserver);
   }
+}
+
+// What the stages have room for.
+bool vtkProgressiveIsosurfaceMapper::Internals::CheckLimits(
+  vtkRenderer* renderer, vtkVolume* volume)
+{
+  vtkVolumeProperty* property = volume->GetProperty();
+  vtkContourValues* values = property->GetIsoSurfaceValues();
+  int shown = 0, lit = 0;
+  for (int i = 0; i < values->GetNumberOfContours(); ++i)
+  {
+    shown += property->GetScalarOpacity()->GetValue(values->GetValue(i)) > 0.0 ? 1 : 0;
+  }
+  vtkCollectionSimpleIterator iterator;
+  vtkLightCollection* lights = renderer->GetLights();
+  lights->InitTraversal(iterator);
+  for (vtkLight* light = lights->GetNextLight(iterator); light;
+       light = lights->GetNextLight(iterator))
+  {
+    lit += property->GetShade() && light->GetSwitch() ? 1 : 0;
+  }
+  const int planes =
+    this->Owner->ClippingPlanes ? this->Owner->ClippingPlanes->GetNumberOfItems() : 0;
+  const auto check = [this](int count, int most, const char* what)
+  {
+    return count <= most ||
+      this->Report("takes at most " + std::to_string(most) + " " + what + ", but there are " +
+        std::to_string(count) + ": take some away, or share them among several mappers");
+  };
+  return check(shown, SceneBlock::MaximumIsovalues, "isovalues that show") &&
+    check(planes, SceneBlock::MaximumClippingPlanes, "clipping planes") &&
+    check(lit, SceneBlock::MaximumLights, "lights that are switched on");
 }
 
 bool vtkProgressiveIsosurfaceMapper::Internals::Report(const std::string& problem)
@@ -281,12 +332,43 @@ void vtkProgressiveIsosurfaceMapper::Internals::HandOverVolume()
 //------------------------------------------------------------------------------
 // The image
 //------------------------------------------------------------------------------
-// Restarts the image where its hits change; a new look is a matter of the composite alone.
+// What may hide a translucent surface: all that shows and is not flat on the window.
+std::pair<int, vtkMTimeType> vtkProgressiveIsosurfaceMapper::Internals::FindObstacles(
+  vtkRenderer* renderer, vtkVolume* volume) const
+{
+  std::pair<int, vtkMTimeType> found = { 0, 0 };
+  vtkCollectionSimpleIterator iterator;
+  vtkPropCollection* props = renderer->GetViewProps();
+  props->InitTraversal(iterator);
+  for (vtkProp* prop = props->GetNextProp(iterator); prop; prop = props->GetNextProp(iterator))
+  {
+    if (prop != volume && prop->GetVisibility() && !prop->IsA("vtkActor2D"))
+    {
+      ++found.first;
+      found.second = std::max(found.second, prop->GetRedrawMTime());
+    }
+  }
+  return found;
+}
+
+// Restarts the image where its hits change. A new look is a matter of the composite alone, but not
+// where layers were blended.
 bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(
   vtkRenderer* renderer, vtkVolume* volume)
 {
-  SceneBlock scene = TranslateScene(renderer, volume, this->Compressed, this->Volume);
-  const bool sameHits = this->HaveScene && SameHits(this->Scene, scene);
+  SceneBlock scene = TranslateScene(renderer, volume, this->Owner, this->Compressed, this->Volume);
+  vtkCamera* camera = renderer->GetActiveCamera();
+  vtkMatrix4x4::Invert(camera->GetModelViewTransformMatrix(), this->EyeToWorld);
+  const bool translucent = scene.Lighting[1] != 0;
+  const auto obstacles =
+    translucent ? this->FindObstacles(renderer, volume) : std::pair<int, vtkMTimeType>();
+  scene.Lighting[2] = obstacles.first > 0 ? 1 : 0;
+  const std::pair<vtkRenderer*, int> view = { renderer, camera->GetLeftEye() };
+  this->RendersOfView = view == this->View ? this->RendersOfView + 1 : 0;
+  const bool sameHits = this->HaveScene && view == this->View && SameHits(this->Scene, scene) &&
+    (!translucent || (SameLook(this->Scene, scene) && obstacles == this->Obstacles));
+  this->View = view;
+  this->Obstacles = obstacles;
   if (sameHits)
   {
     KeepHits(this->Scene, scene);
@@ -318,12 +400,14 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(
   return true;
 }
 
-// Whether somebody will render again if the image stays incomplete now.
+// Whether somebody will render again if the image stays incomplete now. Where several views, or
+// eyes, take turns each of them begins anew: none would ever be complete.
 bool vtkProgressiveIsosurfaceMapper::Internals::MayRefineLater(vtkOpenGLRenderWindow* window) const
 {
+  const int alone = 3;
   vtkRenderWindowInteractor* interactor = window->GetInteractor();
-  return interactor && interactor->GetInitialized() && !window->GetOffScreenRendering() &&
-    window->GetSwapBuffers();
+  return this->RendersOfView >= alone && interactor && interactor->GetInitialized() &&
+    !window->GetOffScreenRendering() && window->GetSwapBuffers();
 }
 
 // Passes, as many as there is time for, and the image as far as it has come.
@@ -363,12 +447,69 @@ void vtkProgressiveIsosurfaceMapper::Internals::Composite(vtkOpenGLRenderWindow*
   vtkOpenGLState::ScopedglEnableDisable cullFace(state, GL_CULL_FACE);
   vtkOpenGLState::ScopedglDepthMask depthMask(state);
   vtkOpenGLState::ScopedglDepthFunc depthFunction(state);
-  state->vtkglDisable(GL_BLEND);
+  vtkOpenGLState::ScopedglBlendFuncSeparate blendFunction(state);
+  const bool translucent = this->Scene.Lighting[1] != 0;
   state->vtkglDisable(GL_CULL_FACE);
+  state->vtkglEnable(GL_DEPTH_TEST);
+  state->vtkglDepthFunc(GL_LEQUAL);
+  state->vtkglDepthMask(translucent ? GL_FALSE : GL_TRUE);
+  if (translucent)
+  {
+    state->vtkglEnable(GL_BLEND); // the layers' colours are multiplied by their opacities
+    state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  }
+  else
+  {
+    state->vtkglDisable(GL_BLEND);
+  }
+  this->Pipeline.Composite();
+}
+
+// All passes that are still needed.
+bool vtkProgressiveIsosurfaceMapper::Internals::Complete()
+{
+  if (!this->Pipeline.GetConverged())
+  {
+    this->Pipeline.RunPasses(0, false, []() { return false; });
+  }
+  return this->Pipeline.GetError().empty() || this->Report(this->Pipeline.GetError());
+}
+
+// A selector has props and cells drawn as colours, pass by pass.
+void vtkProgressiveIsosurfaceMapper::Internals::Select(
+  vtkHardwareSelector* selector, vtkOpenGLRenderWindow* window)
+{
+  selector->BeginRenderProp();
+  float id[3];
+  selector->GetPropColorValue(id);
+  const int pass = selector->GetCurrentPass();
+  std::array<float, 4> selected = { { 0.0f, 0.0f, 0.0f, 0.0f } };
+  if (pass == vtkHardwareSelector::ACTOR_PASS)
+  {
+    std::copy(id, id + 3, selected.begin());
+  }
+  else if (pass == vtkHardwareSelector::CELL_ID_LOW24 ||
+    pass == vtkHardwareSelector::CELL_ID_HIGH24)
+  {
+    selected[3] = pass == vtkHardwareSelector::CELL_ID_LOW24 ? 1.0f : 2.0f;
+  }
+  vtkIdType cells = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    cells *= this->Volume->GetDimensions()[axis] - 1;
+  }
+  selector->UpdateMaximumCellId(cells);
+  vtkOpenGLState* state = window->GetState();
+  vtkOpenGLState::ScopedglEnableDisable blend(state, GL_BLEND);
+  vtkOpenGLState::ScopedglEnableDisable depthTest(state, GL_DEPTH_TEST);
+  vtkOpenGLState::ScopedglDepthMask depthMask(state);
+  vtkOpenGLState::ScopedglDepthFunc depthFunction(state);
+  state->vtkglDisable(GL_BLEND);
   state->vtkglEnable(GL_DEPTH_TEST);
   state->vtkglDepthMask(GL_TRUE);
   state->vtkglDepthFunc(GL_LEQUAL);
-  this->Pipeline.Composite();
+  this->Pipeline.Select(selected);
+  selector->EndRenderProp();
 }
 
 // Asks the interactor for another render as soon as it is idle.
@@ -525,14 +666,10 @@ void vtkProgressiveIsosurfaceMapper::Render(vtkRenderer* renderer, vtkVolume* vo
     vtkErrorMacro("needs an OpenGL render window");
     return;
   }
-  if (renderer->GetSelector() || !this->Impl->UpdateVolume())
+  vtkHardwareSelector* selector = renderer->GetSelector();
+  if (!this->Impl->CheckLimits(renderer, volume) || !this->Impl->UpdateVolume())
   {
-    return; // a selection pass draws identifiers, not images
-  }
-  if (volume->GetProperty()->GetIsoSurfaceValues()->GetNumberOfContours() > 1)
-  {
-    vtkWarningMacro(
-      "renders one isosurface: the property's first isovalue is taken, the others are not");
+    return;
   }
   window->MakeCurrent();
   if (!this->Impl->BindWindow(window))
@@ -540,7 +677,19 @@ void vtkProgressiveIsosurfaceMapper::Render(vtkRenderer* renderer, vtkVolume* vo
     return;
   }
   this->Impl->HandOverVolume();
-  if (!this->Impl->UpdateScene(renderer, volume) || !this->Impl->Refine(window))
+  if (!this->Impl->UpdateScene(renderer, volume))
+  {
+    return;
+  }
+  if (selector)
+  {
+    if (this->Impl->Complete())
+    {
+      this->Impl->Select(selector, window);
+    }
+    return;
+  }
+  if (!this->Impl->Refine(window))
   {
     return;
   }
@@ -564,6 +713,45 @@ void vtkProgressiveIsosurfaceMapper::EmptyCache()
   this->Impl->CacheToEmpty = true;
 }
 
+bool vtkProgressiveIsosurfaceMapper::IsTranslucent(vtkVolumeProperty* property)
+{
+  vtkContourValues* values = property->GetIsoSurfaceValues();
+  for (int i = 0; i < values->GetNumberOfContours(); ++i)
+  {
+    const double opacity = property->GetScalarOpacity()->GetValue(values->GetValue(i));
+    if (opacity > 0.0 && opacity < 1.0)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool vtkProgressiveIsosurfaceMapper::GetHit(int x, int y, double position[3], double& isovalue)
+{
+  Internals* impl = this->Impl.get();
+  const SceneBlock& scene = impl->Pipeline.GetScene();
+  if (!impl->HaveScene || !impl->Window || x < 0 || y < 0 || x >= scene.Image[0] ||
+    y >= scene.Image[1])
+  {
+    return false;
+  }
+  impl->Window->MakeCurrent();
+  const PixelHit hit = impl->Pipeline.ReadHit(static_cast<std::int64_t>(y) * scene.Image[0] + x);
+  if (hit.Key == PixelHit().Key)
+  {
+    return false;
+  }
+  const bool translucent = scene.Lighting[1] != 0;
+  const double t = translucent ? hit.Depth : HitParameter(scene, x, y, hit.Key);
+  double point[4] = { 0.0, 0.0, 0.0, 1.0 };
+  EyePosition(scene, x, y, t, point);
+  impl->EyeToWorld->MultiplyPoint(point, point);
+  std::copy(point, point + 3, position);
+  isovalue = double(scene.Isovalues[hit.Surface][0]) + scene.Isovalues[hit.Surface][1];
+  return true;
+}
+
 bool vtkProgressiveIsosurfaceMapper::GetDepthImage(vtkImageData* image)
 {
   if (!image || !this->Impl->HaveScene || !this->Impl->Window)
@@ -574,6 +762,9 @@ bool vtkProgressiveIsosurfaceMapper::GetDepthImage(vtkImageData* image)
   this->Impl->Window->MakeCurrent();
   const SceneBlock& scene = this->Impl->Pipeline.GetScene();
   const std::vector<std::uint32_t> keys = this->Impl->Pipeline.ReadHitKeys();
+  const bool translucent = scene.Lighting[1] != 0; // the keys are those of the last hits
+  const std::vector<float> first =
+    translucent ? this->Impl->Pipeline.ReadHitDepths() : std::vector<float>();
   vtkNew<vtkFloatArray> depths;
   depths->SetName("Depth");
   depths->SetNumberOfValues(static_cast<vtkIdType>(keys.size()));
@@ -582,7 +773,9 @@ bool vtkProgressiveIsosurfaceMapper::GetDepthImage(vtkImageData* image)
     for (int x = 0; x < scene.Image[0]; ++x)
     {
       const vtkIdType pixel = static_cast<vtkIdType>(y) * scene.Image[0] + x;
-      depths->SetValue(pixel, HitDistance(scene, x, y, keys[pixel]));
+      const double last = HitParameter(scene, x, y, keys[pixel]);
+      const double t = translucent && std::isfinite(last) ? first[pixel] : last;
+      depths->SetValue(pixel, static_cast<float>(RayLength(scene, x, y, t)));
     }
   }
   image->SetDimensions(scene.Image[0], scene.Image[1], 1);

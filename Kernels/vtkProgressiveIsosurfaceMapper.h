@@ -9,13 +9,15 @@
  * meet are decompressed into a cache, the image shows after every pass, and slots of rays that are
  * done let the others test blocks ahead (Usher, Dyken and Kumar, LDAV 2023). A plain vtkImageData
  * as input is compressed on the fly, so that the mapper drops in for vtkGPUVolumeRayCastMapper in
- * isosurface blend mode. Not for translucent or several isosurfaces in one mapper, and not for
- * direct volume rendering.
+ * isosurface blend mode. Not for direct volume rendering.
  *
  * The surface is that of the trilinear interpolant of the decompressed values, where values below
- * the isovalue meet values that are not. The isovalue is the first of vtkVolumeProperty::
- * GetIsoSurfaceValues(), its colour that of the property's transfer function there; shading,
- * ambient, diffuse, specular and specular power are the property's too.
+ * the isovalue meet values that are not. The isovalues are those of vtkVolumeProperty::
+ * GetIsoSurfaceValues(), at most 16 that show; their colours and opacities those of the property's
+ * transfer functions there; shading, ambient, diffuse, specular and specular power are the
+ * property's too, the lights the renderer's, at most 16 that are switched on. Behind a translucent
+ * isosurface rays go on; they end at opaque geometry. Clipping planes (at most 16) and cropping
+ * regions are those of vtkVolumeMapper; cropping planes lie in the image's own axes.
  *
  * Render() in an interactive window performs passes for TimeAllowance seconds, shows what is there
  * and asks the interactor for another render; everywhere else (off-screen, no interactor, or a
@@ -45,6 +47,7 @@ class vtkFloatArray;
 class vtkImageData;
 class vtkProgressiveIsosurfaceStatistics;
 class vtkRenderWindow;
+class vtkVolumeProperty;
 
 class VTKPROGISOKERNELS_EXPORT vtkProgressiveIsosurfaceMapper : public vtkVolumeMapper
 {
@@ -156,6 +159,18 @@ public:
    * false, with an error event, where nothing was rendered yet.
    */
   bool GetDepthImage(vtkImageData* image);
+
+  /**
+   * What the last Render() has met at a pixel of its viewport, from the bottom left: the nearest
+   * surface's place in world coordinates, and its isovalue (of a translucent image: of the last
+   * surface that shows). False where nothing was hit, or the pixel lies outside.
+   */
+  bool GetHit(int x, int y, double position[3], double& isovalue);
+
+  /**
+   * Does a property make one of its isosurfaces translucent, with an opacity between 0 and 1?
+   */
+  static bool IsTranslucent(vtkVolumeProperty* property);
 
   /**
    * For measurements: forget all decoded blocks, so that the next image begins anew and decodes

@@ -4,9 +4,10 @@
 >>> from progiso.data import fetch
 >>> result = progiso.render(progiso.read(fetch("sphere", size=32)), isovalue=0.8)
 
-Volumes are compressed by `compress`, those larger than memory by `compress_slabs`, read and written
-by `read` and `save`, shown by `render`, by `make_isosurface` in a VTK renderer of your own, or by
-``plotter.progiso.add_isosurface`` in pyvista.
+Volumes are compressed by `compress`, those larger than memory by `compress_file` and
+`compress_slabs`, read and written by `read` and `save`, contoured by `contour`, shown by `render`,
+by `make_isosurface` in a VTK renderer of your own, or by ``plotter.progiso.add_isosurface`` in
+pyvista.
 """
 
 from __future__ import annotations
@@ -52,16 +53,18 @@ choose_window()
 from .camera import Camera, orbit_camera, view_camera  # noqa: E402
 from .compression import compress, decompress, describe, is_compressed  # noqa: E402
 from .geometry import image_from_array  # noqa: E402
-from .io import read, save  # noqa: E402
+from .io import compress_file, read, save  # noqa: E402
 from .isosurface import make_isosurface  # noqa: E402
 from .render import RenderResult, render, write_png  # noqa: E402
 from .slabs import compress_slabs  # noqa: E402
 from .statistics import depth, statistics  # noqa: E402
+from .surface import contour, save_surface  # noqa: E402
 from .vtkProgIsoFilters import (  # noqa: E402
     vtkCompressedVolume,
     vtkCompressedVolumeBuilder,
     vtkImageZFPCompress,
     vtkImageZFPDecompress,
+    vtkZFPContour,
     vtkZFPReader,
     vtkZFPWriter,
 )
@@ -76,7 +79,9 @@ __all__ = [
     "RenderResult",
     "add_isosurface",
     "compress",
+    "compress_file",
     "compress_slabs",
+    "contour",
     "decompress",
     "depth",
     "describe",
@@ -87,6 +92,7 @@ __all__ = [
     "read",
     "render",
     "save",
+    "save_surface",
     "statistics",
     "view_camera",
     "vtkCompressedVolume",
@@ -96,6 +102,7 @@ __all__ = [
     "vtkIsosurfaceVolume",
     "vtkProgressiveIsosurfaceMapper",
     "vtkProgressiveIsosurfaceStatistics",
+    "vtkZFPContour",
     "vtkZFPReader",
     "vtkZFPWriter",
     "write_png",

@@ -7,6 +7,8 @@ import warnings
 from contextlib import contextmanager
 
 from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
+from vtkmodules.vtkCommonDataModel import vtkDataObject
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 # "ERROR: In file.cxx, line 12\nvtkClass (0x55...): the message\n\n"
 _MESSAGE = re.compile(
@@ -105,3 +107,17 @@ def observe_progress(algorithm, progress):
     """Call ``progress(fraction)`` whenever a VTK algorithm reports progress."""
     if progress is not None:
         algorithm.AddObserver("ProgressEvent", lambda source, _: progress(source.GetProgress()))
+
+
+def dimensions_of(reader):
+    """Samples along x, y and z of what a reader will read, by its header."""
+    key = vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT()
+    extent = [reader.GetOutputInformation(0).Get(key, i) for i in range(6)]
+    return tuple(last - first + 1 for first, last in zip(extent[::2], extent[1::2]))
+
+
+def place_as_read(image, reader):
+    """Give an image the spacing and origin of what a reader will read, by its header."""
+    about = reader.GetOutputInformation(0)
+    image.SetSpacing([about.Get(vtkDataObject.SPACING(), i) for i in range(3)])
+    image.SetOrigin([about.Get(vtkDataObject.ORIGIN(), i) for i in range(3)])

@@ -17,7 +17,9 @@ from .benchmarks.command import add_bench
 from .data import GENERATORS, SCANS, compressed, fetch
 from .io import COMPRESSED_SUFFIXES, PLAIN_SUFFIXES
 from .progress import progress_bar
+from .surface import SURFACE_SUFFIXES
 
+_COMPRESSIBLE = ".vti .mha .mhd .nrrd .nii .nii.gz .vtk, name_WxHxD_type.raw"
 _READABLE = ".vti .mha .mhd .nrrd .nii .nii.gz .vtk .zfp, name_WxHxD_type.raw"
 
 
@@ -75,6 +77,7 @@ def _parser():
     _add_compress(commands)
     _add_decompress(commands)
     _add_info(commands)
+    _add_contour(commands)
     _add_render(commands)
     _add_data(commands)
     bench = _add_command(commands, "bench", None, "measure time, memory and error beside VTK's own")
@@ -109,7 +112,7 @@ def _add_array(command):
 
 def _add_compress(commands):
     command = _add_command(commands, "compress", _compress, "compress an image with fixed-rate ZFP")
-    _add_input(command, "in")
+    command.add_argument("in", metavar="IN", type=Path, help=_COMPRESSIBLE)
     command.add_argument("out", metavar="OUT", type=Path, help="a .vti or .zfp file")
     _add_array(command)
     command.add_argument("--threads", type=int, default=0, help="0 (default) for one per core")
@@ -134,6 +137,25 @@ def _add_info(commands):
     command = _add_command(commands, "info", _info, "tell what a volume holds")
     _add_input(command)
     command.add_argument("--json", action="store_true", help="as JSON")
+
+
+def _add_contour(commands):
+    command = _add_command(commands, "contour", _contour, "extract isosurfaces as triangles")
+    _add_input(command, "in")
+    suffixes = " ".join(SURFACE_SUFFIXES)
+    command.add_argument("out", metavar="OUT", type=Path, help=f"a file to write: {suffixes}")
+    command.add_argument(
+        "--isovalue", type=float, required=True, action="append",
+        help="in the image's units; may be given several times",
+    )  # fmt: skip
+    command.add_argument(
+        "--rate", type=float,
+        help="compress a plain image first, to this many bits per sample, in (0, 32]",
+    )  # fmt: skip
+    command.add_argument("--array", help="name of the array (default: the active scalars)")
+    command.add_argument("--component", type=int, default=0, help="component of the array")
+    command.add_argument("--no-normals", action="store_true", help="points and triangles alone")
+    command.add_argument("--threads", type=int, default=0, help="0 (default) for one per core")
 
 
 def _add_render(commands):
@@ -273,10 +295,10 @@ def _save(image, path, appended=False):
 
 def _compress(parsed):
     check_output(parsed.out, (".vti",) if parsed.appended else COMPRESSED_SUFFIXES)
-    image = _read(parsed, "in")
-    with progress_bar("Compressing") as progress:
-        volume = progiso.compress(
-            image, parsed.rate, parsed.array, parsed.component, parsed.threads, progress
+    source = getattr(parsed, "in")
+    with progress_bar(f"Compressing {source.name}") as progress:
+        volume = progiso.compress_file(
+            source, parsed.rate, parsed.array, parsed.component, parsed.threads, progress
         )
     _save(volume, parsed.out, parsed.appended)
     about = progiso.describe(volume)
@@ -345,6 +367,26 @@ def _describe_arrays(attributes):
         }
         for array in arrays
     }
+
+
+def _contour(parsed):
+    check_output(parsed.out, SURFACE_SUFFIXES)
+    image = _read(parsed, "in")
+    with progress_bar("Contouring") as progress:
+        surface = progiso.contour(
+            image,
+            parsed.isovalue,
+            parsed.rate,
+            parsed.array,
+            parsed.component,
+            not parsed.no_normals,
+            threads=parsed.threads,
+            progress=progress,
+        )
+    with progress_bar(f"Writing {parsed.out.name}") as progress:
+        progiso.save_surface(surface, parsed.out, progress)
+    points, triangles = surface.GetNumberOfPoints(), surface.GetNumberOfPolys()
+    print(f"{parsed.out}: {points} points, {triangles} triangles")
 
 
 def _render(parsed):

@@ -62,23 +62,47 @@ def compress(image, rate=8.0, array=None, component=0, threads=0, progress=None)
     compressor.SetComponent(component)
     compressor.SetNumberOfThreads(threads)
     if array is not None:
-        compressor.SetInputArrayToProcess(0, 0, 0, _association(image, array), array)
+        _, of_cells = find_array(image, array)
+        compressor.SetInputArrayToProcess(0, 0, 0, _CELLS if of_cells else _POINTS, array)
     observe_progress(compressor, progress)
     with vtk_errors("cannot compress"):
         compressor.Update()
     return compressor.GetOutput()
 
 
-def _association(image, array):
-    """Whether an array's values belong to points or cells."""
-    points, cells = image.GetPointData(), image.GetCellData()
-    if points.HasArray(array):
-        return _POINTS
-    if cells.HasArray(array):
-        return _CELLS
-    names = [d.GetArrayName(i) for d in (points, cells) for i in range(d.GetNumberOfArrays())]
+def find_array(image, array=None):
+    """Find an array of a plain image.
+
+    Parameters
+    ----------
+    image : vtkmodules.vtkCommonDataModel.vtkImageData
+        With the array.
+    array : str, optional
+        Its name; by default the active point scalars, else the first point array, else the active
+        cell scalars, else the first cell array.
+
+    Returns
+    -------
+    found : vtkmodules.vtkCommonCore.vtkDataArray
+        The array.
+    of_cells : bool
+        Whether its values belong to cells, not points.
+
+    Raises
+    ------
+    ValueError
+        When there is none; the message lists those that there are.
+    """
+    for of_cells, attributes in enumerate((image.GetPointData(), image.GetCellData())):
+        arrays = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]
+        for found in (attributes.GetScalars(), *arrays):
+            if found is not None and array in (None, found.GetName()):
+                return found, bool(of_cells)
+    data = (image.GetPointData(), image.GetCellData())
+    names = [d.GetArrayName(i) for d in data for i in range(d.GetNumberOfArrays())]
     listed = ", ".join(repr(name) for name in names) or "none"
-    raise ValueError(f"the image has no array {array!r}; it has: {listed}")
+    wanted = "array" if array is None else f"array {array!r}"
+    raise ValueError(f"the image has no {wanted}; it has: {listed}")
 
 
 def decompress(image, threads=0, progress=None):

@@ -89,3 +89,33 @@ def axes_of(image):
     matrix = image.GetDirectionMatrix()
     direction = np.array([[matrix.GetElement(i, j) for j in range(3)] for i in range(3)])
     return direction * np.asarray(image.GetSpacing())
+
+
+def cell_centres(image):
+    """Make an image whose points are the centres of another's cells.
+
+    Parameters
+    ----------
+    image : vtkmodules.vtkCommonDataModel.vtkImageData
+        At least 2 points along every axis.
+
+    Returns
+    -------
+    vtkmodules.vtkCommonDataModel.vtkImageData
+        Without data.
+
+    Examples
+    --------
+    >>> image = vtkImageData()
+    >>> image.SetDimensions(4, 3, 2)
+    >>> centres = cell_centres(image)
+    >>> centres.GetDimensions(), centres.GetOrigin()
+    ((3, 2, 1), (0.5, 0.5, 0.5))
+    """
+    centres = vtkImageData()
+    centres.CopyStructure(image)
+    centres.SetExtent([end - upper for upper, end in zip((0, 1) * 3, image.GetExtent())])
+    origin = [0.0, 0.0, 0.0]
+    image.TransformContinuousIndexToPhysicalPoint(0.5, 0.5, 0.5, origin)
+    centres.SetOrigin(origin)
+    return centres

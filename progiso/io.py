@@ -14,11 +14,12 @@ from vtkmodules.vtkIOXML import (
 
 from ._files import atomic_path, check_output
 from ._vtk import captured_output, image_data, observe_progress, vtk_errors
-from .compression import is_compressed
-from .metaimage import read_metaimage, write_metaimage
-from .nifti import read_nibabel, read_nifti, write_nifti
-from .nrrd import read_nrrd
-from .raw import read_raw, write_raw
+from .compression import compress, is_compressed
+from .metaimage import metaimage_slabs, read_metaimage, write_metaimage
+from .nifti import nifti_slabs, read_nibabel, read_nifti, write_nifti
+from .nrrd import nrrd_slabs, read_nrrd
+from .raw import raw_slabs, read_raw, write_raw
+from .slabs import build
 from .vtkProgIsoFilters import vtkZFPReader, vtkZFPWriter
 
 
@@ -69,6 +70,69 @@ def read(path, dimensions=None, rate=None, progress=None):
     else:
         image = _READERS.get(suffix, _read_other)(path)
     return _checked(image, path)
+
+
+def compress_file(path, rate=8.0, array=None, component=0, threads=0, progress=None):
+    """Compress a volume in a file, some slices at a time where the file allows it.
+
+    The result is bit for bit that of `compress` on what `read` gives. ``.raw``, ``.nrrd``,
+    ``.nhdr``, ``.nii``, ``.nii.gz``, ``.mha`` and ``.mhd`` are never in memory as a whole, whether
+    their samples are compressed or not: what is held is the result and some tens of MiB, or 4
+    slices where these are more. Other formats are read as a whole, as are these when their samples
+    are text, lie in several files, or are compressed and begin with the last slice.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        Of any kind that `read` knows.
+    rate, array, component, threads
+        As in `compress`.
+    progress : callable, optional
+        Called with the fraction done, from 0 to 1.
+
+    Returns
+    -------
+    vtkmodules.vtkCommonDataModel.vtkImageData
+        A compressed volume.
+
+    Raises
+    ------
+    FileNotFoundError
+        When there is no such file.
+    ValueError
+        When the file is damaged or no image, there is no such array, or the rate is out of range.
+    RuntimeError
+        When the image cannot be compressed, see `compress`.
+
+    Examples
+    --------
+    >>> import progiso
+    >>> from progiso.data import fetch
+    >>> volume = progiso.compress_file(fetch("sphere", size=32), rate=4)
+    >>> progiso.describe(volume)["samples"]
+    [32, 32, 32]
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise FileNotFoundError(f"there is no file '{path}'")
+    if not 0 < rate <= 32:
+        raise ValueError(f"rate must be in (0, 32] bits per sample, got {rate:g}")
+    source = _SLABS.get(suffix_of(path), lambda path: None)(path)
+    if source is None:
+        image = read(path, progress=_part(progress, 0.0))
+        return compress(image, rate, array, component, threads, _part(progress, 0.5))
+    if array not in (None, source.name):
+        raise ValueError(f"the image has no array {array!r}; it has: {source.name!r}")
+    volume = build(
+        source.vtk_arrays(), source.dimensions, rate, source.name, component, threads, progress
+    )
+    source.place(volume)
+    return volume
+
+
+def _part(progress, start):
+    """Progress of one half of the work."""
+    return None if progress is None else lambda fraction: progress(start + 0.5 * fraction)
 
 
 def suffix_of(path):
@@ -143,6 +207,15 @@ _READERS = {
     ".nii": read_nifti,
     ".nii.gz": read_nifti,
     ".raw": read_raw,
+}
+_SLABS = {
+    ".mha": metaimage_slabs,
+    ".mhd": metaimage_slabs,
+    ".nrrd": nrrd_slabs,
+    ".nhdr": nrrd_slabs,
+    ".nii": nifti_slabs,
+    ".nii.gz": nifti_slabs,
+    ".raw": raw_slabs,
 }
 
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.numpy_support import get_vtk_to_numpy_typemap, vtk_to_numpy
 from vtkmodules.vtkIOImage import vtkMetaImageReader
 
-from ._vtk import vtk_errors
+from ._vtk import dimensions_of, place_as_read, vtk_errors
 from .geometry import axes_of, set_axes
+from .slab_files import Inflated, SlabFile, opened_at
 
 _ELEMENT_TYPES = {
     "int8": "MET_CHAR",
@@ -36,23 +39,74 @@ def read_metaimage(path):
     vtkmodules.vtkCommonDataModel.vtkImageData
         In the file's own world coordinates (usually left-posterior-superior).
     """
-    reader = vtkMetaImageReader()
-    if not reader.CanReadFile(str(path)):
-        raise ValueError(f"'{path}' is not a MetaImage")
+    reader = _reader(path)
     with vtk_errors(f"cannot read '{path}'"):
-        reader.SetFileName(str(path))
         reader.Update()
     image = reader.GetOutput()
-    transform = _header(path).get("TransformMatrix")
+    _turn(image, _header(path)[0])
+    return image
+
+
+def _turn(image, fields):
+    """Set the direction that VTK passes over."""
+    transform = fields.get("TransformMatrix")
     if transform and len(transform.split()) == 9:
         # The file lists one axis after the other: its rows are the direction's columns.
         direction = np.array(transform.split(), float).reshape(3, 3).T
         set_axes(image, direction * np.asarray(image.GetSpacing()), image.GetOrigin())
-    return image
+
+
+def metaimage_slabs(path):
+    """Open a MetaImage to be read some slices at a time; errors as in `read_metaimage`.
+
+    Returns
+    -------
+    SlabFile or None
+        None when its samples are text, in several files, not three-dimensional, or of a type whose
+        size depends on the machine.
+    """
+    path = Path(path)
+    fields, header_bytes = _header(path)
+    data = fields.get("ElementDataFile", "")
+    plain = _flag(fields, "BinaryData") and data.split()[:1] != ["LIST"] and "%" not in data
+    long = fields.get("ElementType", "").endswith("LONG")
+    if fields.get("NDims") != "3" or not plain or long:
+        return None
+    reader = _reader(path)
+    with vtk_errors(f"cannot read '{path}'"):
+        reader.UpdateInformation()
+    kind = reader.GetDataScalarType()
+    big = _flag(fields, "BinaryDataByteOrderMSB") or _flag(fields, "ElementByteOrderMSB")
+    dtype = np.dtype(get_vtk_to_numpy_typemap()[kind]).newbyteorder(">" if big else "<")
+    dimensions, components = dimensions_of(reader), reader.GetNumberOfScalarComponents()
+    local = data.upper() == "LOCAL"
+    offset = int(fields.get("HeaderSize", 0)) or (header_bytes if local else 0)
+    if offset == -1:  # the samples end the file
+        offset = -int(np.prod(dimensions, dtype=object)) * components * dtype.itemsize
+    wrap = Inflated if _flag(fields, "CompressedData") else None
+
+    def place(image):
+        place_as_read(image, reader)
+        _turn(image, fields)
+
+    opener = opened_at(path if local else path.parent / data, offset, wrap)
+    return SlabFile(path, "MetaImage", dimensions, dtype, opener, place, components, kind)
+
+
+def _flag(fields, key):
+    return fields.get(key, "False").lower() in ("true", "1")
+
+
+def _reader(path):
+    reader = vtkMetaImageReader()
+    if not reader.CanReadFile(str(path)):
+        raise ValueError(f"'{path}' is not a MetaImage")
+    reader.SetFileName(str(path))
+    return reader
 
 
 def _header(path):
-    """Fields of a MetaImage's text header; ElementDataFile is always its last."""
+    """Fields of a MetaImage's text header, and its length; ElementDataFile is always its last."""
     fields = {}
     with open(path, "rb") as file:
         for line in iter(lambda: file.readline(4096), b""):
@@ -60,7 +114,7 @@ def _header(path):
             fields[key.strip()] = value.strip()
             if key.strip() == "ElementDataFile":
                 break
-    return fields
+        return fields, file.tell()
 
 
 def write_metaimage(image, path):

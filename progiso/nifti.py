@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.numpy_support import get_vtk_to_numpy_typemap, numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkIOImage import vtkNIFTIImageReader, vtkNIFTIImageWriter
 
-from ._vtk import vtk_errors
+from ._vtk import dimensions_of, place_as_read, vtk_errors
 from .geometry import axes_of, image_from_array, set_axes
+from .slab_files import SlabFile, gunzipped, opened_at
 
 
 def read_nifti(path):
@@ -25,30 +28,84 @@ def read_nifti(path):
         In the file's world coordinates (right-anterior-superior), by its sform where it has
         one, else by its qform. A slope and intercept other than 1 and 0 are applied, as float32.
     """
+    reader = _reader(path)
+    with vtk_errors(f"cannot read '{path}'"):
+        reader.Update()
+    image = reader.GetOutput()
+    _place(image, reader)
+    rescale = _rescaling(reader)
+    if rescale is not None:
+        scalars = image.GetPointData().GetScalars()
+        scaled = numpy_to_vtk(rescale(vtk_to_numpy(scalars)))
+        scaled.SetName(scalars.GetName())
+        image.GetPointData().SetScalars(scaled)
+    return image
+
+
+def nifti_slabs(path):
+    """Open a NIfTI image to be read some slices at a time; errors as in `read_nifti`.
+
+    Returns
+    -------
+    SlabFile or None
+        None when it has a vector's components one after the other, or is compressed and begins
+        with the last slice.
+    """
+    reader = _reader(path)
+    with vtk_errors(f"cannot read '{path}'"):
+        reader.UpdateInformation()
+    with open(path, "rb") as file:
+        packed = file.read(2) == b"\x1f\x8b"
+    from_top = reader.GetQFac() < 0  # VTK puts the slices in the other order
+    if reader.GetNIFTIHeader().GetDim(5) > 1 or (packed and from_top):
+        return None
+
+    def place(image):
+        place_as_read(image, reader)
+        _place(image, reader)
+
+    header = reader.GetHeaderSize()
+    opener = opened_at(path, 0, gunzipped, header) if packed else opened_at(path, header)
+    kind = reader.GetDataScalarType()
+    dtype = np.dtype(get_vtk_to_numpy_typemap()[kind])
+    dtype = dtype.newbyteorder() if reader.GetSwapBytes() else dtype
+    return SlabFile(
+        Path(path),
+        "NIFTI",
+        dimensions_of(reader),
+        dtype,
+        opener,
+        place,
+        reader.GetNumberOfScalarComponents(),
+        kind,
+        _rescaling(reader),
+        from_top,
+    )
+
+
+def _reader(path):
     reader = vtkNIFTIImageReader()
     if not reader.CanReadFile(str(path)):
         raise ValueError(f"'{path}' is not a NIfTI image")
-    with vtk_errors(f"cannot read '{path}'"):
-        reader.SetFileName(str(path))
-        reader.Update()
-    image = reader.GetOutput()
+    reader.SetFileName(str(path))
+    return reader
+
+
+def _place(image, reader):
+    """Set the axes and origin by the affine, which maps VTK's own coordinates, spacing included."""
     affine = reader.GetSFormMatrix() or reader.GetQFormMatrix()
-    if affine is not None:  # it maps VTK's own coordinates, spacing included
+    if affine is not None:
         matrix = np.array([[affine.GetElement(i, j) for j in range(4)] for i in range(4)])
         origin = matrix[:3, :3] @ np.asarray(image.GetOrigin()) + matrix[:3, 3]
         set_axes(image, matrix[:3, :3] * np.asarray(image.GetSpacing()), origin)
-    return _rescaled(image, reader.GetRescaleSlope(), reader.GetRescaleIntercept())
 
 
-def _rescaled(image, slope, intercept):
-    """Apply a NIfTI slope and intercept to the scalars; a slope of 0 or NaN means none."""
+def _rescaling(reader):
+    """How to apply the slope and intercept, or None; a slope of 0 or NaN means none."""
+    slope, intercept = reader.GetRescaleSlope(), reader.GetRescaleIntercept()
     if not np.isfinite(slope) or slope == 0 or (slope == 1 and intercept == 0):
-        return image
-    scalars = image.GetPointData().GetScalars()
-    scaled = numpy_to_vtk((vtk_to_numpy(scalars) * slope + intercept).astype(np.float32))
-    scaled.SetName(scalars.GetName())
-    image.GetPointData().SetScalars(scaled)
-    return image
+        return None
+    return lambda values: (values * slope + intercept).astype(np.float32)
 
 
 def write_nifti(image, path):

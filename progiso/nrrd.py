@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from .geometry import image_from_array, set_axes
+from .slab_files import SlabFile, gunzipped, opened_at
 
 _TYPES = {
     "int8": "signed char|int8|int8_t",
@@ -35,6 +36,7 @@ _DECODERS = {
     "bzip2": bz2.decompress,
     "bz2": bz2.decompress,
 }
+_UNPACKERS = {"gzip": gunzipped, "gz": gunzipped, "bzip2": bz2.BZ2File, "bz2": bz2.BZ2File}
 
 
 def read_nrrd(path):
@@ -61,15 +63,60 @@ def read_nrrd(path):
         sizes, dtype = _layout(fields, path)
         raw = _payload(file, fields, path)
     values = _decode(raw, fields, dtype, int(np.prod(sizes, dtype=object)), path)
-    vectors = _vectors(fields.get("space directions", ""))
-    components = 1
-    if len(sizes) == 4:  # samples of several values: their axis comes first and has no direction
-        if vectors and vectors[0] is not None:
-            raise ValueError(f"'{path}': only a first axis of components is supported, not {sizes}")
-        components, sizes, vectors = sizes[0], sizes[1:], vectors[1:]
-    image = image_from_array(values, sizes, path.stem, components)
+    components, dimensions, vectors = _axes(fields, sizes, path)
+    image = image_from_array(values, dimensions, path.stem, components)
     _place(image, fields, vectors)
     return image
+
+
+def nrrd_slabs(path):
+    """Open a NRRD to be read some slices at a time; errors as in `read_nrrd`.
+
+    Returns
+    -------
+    SlabFile or None
+        None when its samples are text, or compressed and counted from the end.
+    """
+    path = Path(path)
+    with open(path, "rb") as file:
+        fields = _header(file, path)
+        sizes, dtype = _layout(fields, path)
+        data, offset = _data_file(fields, path), file.tell()
+    components, dimensions, vectors = _axes(fields, sizes, path)
+    encoding, skip = fields["encoding"].lower(), int(fields.get("byte skip", 0))
+    if encoding not in _DECODERS or (encoding != "raw" and skip == -1):
+        return None
+    offset = _behind_lines(data or path, 0 if data else offset, int(fields.get("line skip", 0)))
+    if encoding == "raw":
+        bytes_held = int(np.prod(sizes, dtype=object)) * dtype.itemsize
+        opener = opened_at(data or path, -bytes_held if skip == -1 else offset + skip)
+    else:
+        opener = opened_at(data or path, offset, _UNPACKERS[encoding], skip)
+
+    def place(image):
+        _place(image, fields, vectors)
+
+    return SlabFile(path, path.stem, dimensions, dtype, opener, place, components)
+
+
+def _behind_lines(path, offset, lines):
+    """The place in a file that some lines after another lead to."""
+    with open(path, "rb") as file:
+        file.seek(offset)
+        for _ in range(lines):
+            file.readline()
+        return file.tell()
+
+
+def _axes(fields, sizes, path):
+    """Components of a sample, samples along x, y and z, and the vectors between them, if any."""
+    vectors = _vectors(fields.get("space directions", ""))
+    if len(sizes) == 3:
+        return 1, tuple(sizes), vectors
+    # samples of several values: their axis comes first and has no direction
+    if vectors and vectors[0] is not None:
+        raise ValueError(f"'{path}': only a first axis of components is supported, not {sizes}")
+    return sizes[0], tuple(sizes[1:]), vectors[1:]
 
 
 def _header(file, path):
@@ -100,12 +147,18 @@ def _layout(fields, path):
 
 def _payload(file, fields, path):
     """The encoded bytes, from behind the header or from the detached file."""
+    detached = _data_file(fields, path)
+    return file.read() if detached is None else detached.read_bytes()
+
+
+def _data_file(fields, path):
+    """The file that holds the samples, or None when they follow the header."""
     detached = fields.get("data file", fields.get("datafile"))
     if detached is None:
-        return file.read()
+        return None
     if detached.startswith("LIST") or "%" in detached:
         raise ValueError(f"'{path}': data in several files is not supported")
-    return (path.parent / detached).read_bytes()
+    return path.parent / detached
 
 
 def _decode(raw, fields, dtype, count, path):

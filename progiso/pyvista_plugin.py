@@ -12,6 +12,7 @@ import pyvista
 from .compression import as_compressed, compress, decompress, describe, is_compressed
 from .isosurface import make_isosurface
 from .statistics import depth, statistics
+from .surface import contour
 
 
 def add_isosurface(
@@ -220,6 +221,31 @@ class ImageAccessor:
         ['height']
         """
         return pyvista.wrap(decompress(self._image, progress=progress))
+
+    def contour(self, isovalues, **kwargs):
+        """Extract isosurfaces as triangles, see :func:`progiso.contour`.
+
+        Parameters
+        ----------
+        isovalues : float or sequence of float
+            In the units of the image's values.
+        **kwargs
+            Other parameters of :func:`progiso.contour`.
+
+        Returns
+        -------
+        pyvista.PolyData
+
+        Examples
+        --------
+        >>> import progiso
+        >>> import pyvista as pv
+        >>> image = pv.ImageData(dimensions=(16, 16, 16))
+        >>> image["height"] = image.points[:, 2]
+        >>> image.progiso.compress(rate=4).progiso.contour(7.5).n_points
+        256
+        """
+        return pyvista.wrap(contour(self._image, isovalues, **kwargs))
 
     @property
     def is_compressed(self):

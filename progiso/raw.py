@@ -9,6 +9,7 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .geometry import image_from_array
+from .slab_files import SlabFile, opened_at
 
 TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64")
 
@@ -86,6 +87,26 @@ def read_raw(path):
     ValueError
         When the name does not follow the convention or the size does not fit it.
     """
+    name, dimensions, dtype = _checked_name(path)
+    values = np.memmap(path, dtype=dtype, mode="r")
+    if not values.dtype.isnative:  # a big-endian machine has to swap, hence to copy
+        values = values.astype(dtype.newbyteorder("="))
+    return image_from_array(values, dimensions, name)
+
+
+def raw_slabs(path):
+    """Open a raw volume to be read some slices at a time; errors as in `read_raw`.
+
+    Returns
+    -------
+    SlabFile
+    """
+    name, dimensions, dtype = _checked_name(path)
+    return SlabFile(Path(path), name, dimensions, dtype, opened_at(path), lambda image: None)
+
+
+def _checked_name(path):
+    """What a raw file's name announces, if its size agrees."""
     name, dimensions, dtype = parse_raw_name(path)
     expected = int(np.prod(dimensions, dtype=object)) * dtype.itemsize
     actual = Path(path).stat().st_size
@@ -94,10 +115,7 @@ def read_raw(path):
             f"'{path}' has {actual} bytes where its name announces {expected} "
             f"({'x'.join(map(str, dimensions))} samples of {dtype.itemsize} bytes)"
         )
-    values = np.memmap(path, dtype=dtype, mode="r")
-    if not values.dtype.isnative:  # a big-endian machine has to swap, hence to copy
-        values = values.astype(dtype.newbyteorder("="))
-    return image_from_array(values, dimensions, name)
+    return name, dimensions, dtype
 
 
 def write_raw(image, path):

@@ -63,14 +63,20 @@ def compress_slabs(slabs, dimensions, rate=8.0, name="scalars", threads=0, progr
     [32, 32, 32]
     """
     dimensions = tuple(int(n) for n in dimensions)
+    if callable(slabs):
+        slabs = compute_slabs(slabs, dimensions, threads)
+    arrays = (_vtk_array(slab) for slab in _whole_layers(slabs, dimensions))
+    return build(arrays, dimensions, rate, name, 0, threads, progress)
+
+
+def build(arrays, dimensions, rate, name, component, threads, progress):
+    """Compress slabs of whole layers of blocks that are VTK arrays; see `compress_slabs`."""
     builder = vtkCompressedVolumeBuilder()
     builder.SetArrayName(name)
     builder.SetNumberOfThreads(threads)
     _require(builder.Start(dimensions, rate), builder)
-    if callable(slabs):
-        slabs = compute_slabs(slabs, dimensions, threads)
-    for slab in _whole_layers(slabs, dimensions):
-        _require(builder.AddSlab(_vtk_array(slab)), builder)
+    for array in arrays:
+        _require(builder.AddSlab(array, component), builder)
         if progress is not None:
             progress(builder.GetNumberOfSlices() / dimensions[2])
     image = vtkImageData()

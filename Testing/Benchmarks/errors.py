@@ -161,7 +161,7 @@ class _Measurement:
     def _time(self, view):
         """Median milliseconds of the view after its opposite; the view is rendered last."""
         times = []
-        view.render_from(self._camera)
+        view.warm_up(self._camera)
         while not times or (len(times) < self._repeat and sum(times) < _ENOUGH_MS):
             view.render_from(opposite(self._camera))
             times.append(view.render_from(self._camera))
@@ -180,7 +180,7 @@ class _Measurement:
     def _passes(self):
         image = compressed(self._field)
         view = Isosurface(image, self._isovalue, self._settings.size, cached=True)
-        view.render_from(self._camera)
+        view.warm_up(self._camera)
         view.render_from(opposite(self._camera))
         view.set_passes_per_render(1)
         view.look(self._camera)

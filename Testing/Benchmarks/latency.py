@@ -40,7 +40,8 @@ def measure_latency(field, settings):
     image, isovalue = compressed(field), settings.isovalues_of(field)[0]
     cameras = settings.cameras(image)
     view = Isosurface(image, isovalue, settings.size)
-    for camera in cameras:  # uploads the volume, compiles the shaders, lets the cache grow
+    view.warm_up(cameras[-1])
+    for camera in cameras:  # lets the cache grow
         view.render_from(camera)
     cold, moved, first = [], [], []
     for camera in cameras * settings.repeat:

@@ -9,8 +9,9 @@ from .ours import Isosurface
 def render_orbit(field, settings, **options):
     """Render a field at every isovalue from every position of the orbit, in a new window.
 
-    Before that one image is rendered and not counted: it uploads the volume and compiles the
-    shaders. From then on the block cache lives on from image to image.
+    Before that one image is rendered and not counted, on a GPU for a second: it uploads the volume,
+    compiles the shaders and wakes the GPU up. From then on the block cache lives on from image to
+    image.
 
     Parameters
     ----------
@@ -29,7 +30,7 @@ def render_orbit(field, settings, **options):
     image, isovalues = compressed(field), settings.isovalues_of(field)
     cameras = settings.cameras(image)
     view = Isosurface(image, isovalues[0], settings.size, **options)
-    first = view.render_from(cameras[-1])
+    first = view.warm_up(cameras[-1])
     images = []
     for isovalue in isovalues * settings.repeat:
         view.set_isovalue(isovalue)

@@ -105,7 +105,7 @@ def _measure_mapper(path, field, settings, gpu):
 def _measure_frames(view, image, field, settings, gpu):
     """First frame, and later ones at every isovalue from every position; closes the view."""
     cameras = settings.cameras(image)
-    first, later = view.render_from(cameras[-1]), []
+    first, later = view.warm_up(cameras[-1]), []
     gpu.look()
     for isovalue in settings.isovalues_of(field):
         view.set_isovalue(isovalue)
@@ -125,7 +125,7 @@ def _measure_mesh(path, field, settings, gpu):
         triangles.append(mesh.GetNumberOfPolys())
         sizes.append(mesh_bytes(mesh))
         view = Mesh(mesh, settings.size)
-        first.append(view.render_from(cameras[-1]))
+        first.append(view.warm_up(cameras[-1]))
         later += [view.render_from(camera) for camera in cameras * settings.repeat]
         gpu.look()
         view.close()

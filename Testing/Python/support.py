@@ -11,6 +11,14 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 
 PREFIX = "ProgIso.ZFP."
 
+# Source of a function for programs that measure their own memory. Not resource.getrusage: a process starts with its parent's
+# peak there, and a large parent's hides its own.
+PEAK = """
+def peak():
+    with open("/proc/self/status") as status:
+        return next(int(line.split()[1]) * 1024 for line in status if line.startswith("VmHWM:"))
+"""
+
 # --- fields ------------------------------------------------------------------------------------------------------------------
 
 

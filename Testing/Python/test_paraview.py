@@ -112,6 +112,8 @@ def test_ways_to_the_same_picture(shown):
 
 CORE = {
     "filters": ["test_filters.py"],
+    "contour": ["test_contour.py", "-k", "not mri-brain"],
+    "files": ["test_compress_file.py", "-k", "not nii and not memory"],
     "decoder": ["test_decode.py", "-k", "all_rates or extreme or random_streams"],
     "depth": ["test_depth.py", "-k", "white_noise or geometry or user_matrix or camera_inside or ct-cranium"],
     "invariance": ["test_invariance.py", "test_statistics.py", "test_progressive.py"],

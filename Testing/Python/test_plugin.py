@@ -22,7 +22,18 @@ def run(name, build, folder):  # noqa: F811
 
 @pytest.mark.parametrize(
     "name",
-    ["show_plain", "show_compressed", "opaque", "zfp_files", "interactive", "errors", "cell_data", "panel", "trace"],
+    [
+        "show_plain",
+        "show_compressed",
+        "opaque",
+        "zfp_files",
+        "interactive",
+        "errors",
+        "cell_data",
+        "panel",
+        "trace",
+        "contour",
+    ],
 )
 def test_script(name, build, tmp_path):  # noqa: F811
     run(name, build, tmp_path)

@@ -113,7 +113,7 @@ def check_memory(image, statistics):
 
 SHAPE, SIZE = (100, 90, 110), (160, 120)
 BLOCKS, MACROCELLS, PIXELS = 25 * 23 * 28, 7 * 6 * 7, 160 * 120
-ALWAYS = {"control", "pass_statistics", "macrocells", "hits", "depths", "cache_values", "scene", "staging"}
+ALWAYS = {"control", "pass_statistics", "macrocells", "hits", "cache_values", "scene", "staging"}
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,58 @@
+// What a pixel's ray has met, in sections of a word a pixel: the hit's key; its depth, the parameter t, of a translucent
+// image that of the first hit; with several isovalues the number of the one that was hit; where opaque geometry hides what
+// is behind it, the window's depth.
+
+struct Hit
+{
+  uint Key;    // NO_HIT, or an unsigned integer in the order of t
+  int Surface; // number of the isovalue
+};
+
+const Hit MISS = Hit(NO_HIT, 0);
+
+uint ImagePixels()
+{
+  return uint(scene.Image.x * scene.Image.y);
+}
+
+#ifdef BINDING_HITS
+Hit HitOf(uint pixel)
+{
+#ifdef SEVERAL_ISOVALUES
+  return Hit(hits[pixel], int(hits[2u * ImagePixels() + pixel]));
+#else
+  return Hit(hits[pixel], 0);
+#endif
+}
+
+float DepthOf(uint pixel)
+{
+  return uintBitsToFloat(hits[ImagePixels() + pixel]);
+}
+
+float ObstacleOf(uint pixel)
+{
+#ifdef SEVERAL_ISOVALUES
+  return uintBitsToFloat(hits[3u * ImagePixels() + pixel]);
+#else
+  return uintBitsToFloat(hits[2u * ImagePixels() + pixel]);
+#endif
+}
+
+void KeepHit(uint pixel, Hit hit, float depth)
+{
+#ifdef TRANSLUCENT
+  bool first = hits[pixel] == NO_HIT;
+#else
+  bool first = true;
+#endif
+  hits[pixel] = hit.Key;
+  if (first)
+  {
+    hits[ImagePixels() + pixel] = floatBitsToUint(depth);
+  }
+#ifdef SEVERAL_ISOVALUES
+  hits[2u * ImagePixels() + pixel] = uint(hit.Surface);
+#endif
+}
+#endif

@@ -1,0 +1,18 @@
+// The layers of a translucent image, blended front to back.
+
+#define OPAQUE_ENOUGH 0.998 // what lies behind changes no colour of 8 bits
+
+vec4 BlendedLayers(uint pixel)
+{
+  uvec2 bits = layers[pixel];
+  return vec4(unpackUnorm2x16(bits.x), unpackUnorm2x16(bits.y));
+}
+
+// Adds what lies behind all that is there; false where nothing more would show.
+bool AddLayer(uint pixel, vec3 color, float opacity)
+{
+  vec4 before = BlendedLayers(pixel);
+  vec4 sum = before + (1.0 - before.w) * opacity * vec4(color, 1.0);
+  layers[pixel] = uvec2(packUnorm2x16(sum.xy), packUnorm2x16(sum.zw));
+  return sum.w < OPAQUE_ENOUGH;
+}

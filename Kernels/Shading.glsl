@@ -1,0 +1,54 @@
+// Light on a surface, by Phong's model as VTK's volume mapper has it, in view coordinates. Two-sided, a light reaches the
+// surface from either side, one-sided only from where the values are lower.
+
+#ifdef LIT
+// What of a light arrives, and from where.
+float Attenuation(Light light, vec3 position, out vec3 toLight)
+{
+  if (light.Place.w == 0.0)
+  {
+    toLight = light.Place.xyz;
+    return 1.0;
+  }
+  vec3 way = light.Place.xyz - position;
+  float distance = length(way);
+  toLight = way / distance;
+  float attenuation = 1.0 / dot(light.Fading.xyz, vec3(1.0, distance, distance * distance));
+  if (light.Axis.w >= -1.0)
+  {
+    float cosine = dot(-toLight, light.Axis.xyz);
+    attenuation *= cosine >= light.Axis.w ? pow(cosine, light.Color.w) : 0.0;
+  }
+  return attenuation;
+}
+
+vec3 Illuminate(vec3 position, vec3 normal, vec3 toViewer, vec3 surfaceColor)
+{
+  vec3 color = scene.Material.x * surfaceColor;
+  for (int i = 0; i < scene.Lighting.x; ++i)
+  {
+    vec3 toLight;
+    vec3 light = scene.Lights[i].Color.rgb * Attenuation(scene.Lights[i], position, toLight);
+    vec3 facing = scene.Lighting.w != 0 && dot(normal, toLight) > 0.0 ? normal : -normal;
+    float cosine = dot(facing, toLight);
+    if (cosine > 0.0)
+    {
+      float highlight = max(dot(reflect(-toLight, facing), toViewer), 0.0);
+      color += light * scene.Material.y * cosine * surfaceColor;
+      color += light * scene.Material.z * pow(highlight, scene.Material.w);
+    }
+  }
+  return clamp(color, 0.0, 1.0);
+}
+#endif
+
+// Colour of a surface at parameter t of a pixel's ray; unlit, the normal does not matter.
+vec3 Shade(uint pixel, float t, vec3 normal, int surface)
+{
+  vec3 color = scene.Colors[surface].rgb;
+#ifdef LIT
+  vec3 direction = EyeRayDirection(pixel);
+  color = Illuminate(EyeRayOrigin(pixel) + t * direction, normal, -normalize(direction), color);
+#endif
+  return color;
+}

@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// vtkZFPContour against vtkFlyingEdges3D on the decoded image: the same triangles in every bit.
+#include "CompressionTestTools.h"
+
+#include <vtkCellArray.h>
+#include <vtkFieldData.h>
+#include <vtkFlyingEdges3D.h>
+#include <vtkImageZFPDecompress.h>
+#include <vtkPolyData.h>
+#include <vtkSMPTools.h>
+#include <vtkZFPContour.h>
+
+#include <limits>
+
+namespace
+{
+using namespace test;
+
+const char* const ArrayNames[] = { "Normals", "Gradients", "density" };
+
+// A point's coordinates and what is stored with it, in bits: equal only where all is equal.
+std::vector<vtkTypeUInt32> BitsOfPoint(vtkPolyData* surface, vtkIdType point)
+{
+  std::vector<float> values;
+  double x[3];
+  surface->GetPoint(point, x);
+  values.insert(values.end(), x, x + 3);
+  for (const char* name : ArrayNames)
+  {
+    vtkDataArray* array = surface->GetPointData()->GetArray(name);
+    for (int i = 0; array && i < array->GetNumberOfComponents(); ++i)
+    {
+      values.push_back(static_cast<float>(array->GetComponent(point, i)));
+    }
+  }
+  std::vector<vtkTypeUInt32> bits(values.size());
+  memcpy(bits.data(), values.data(), sizeof(float) * values.size());
+  return bits;
+}
+
+// All triangles, whatever their order, but each with its corners in theirs.
+std::vector<std::vector<vtkTypeUInt32>> Triangles(vtkPolyData* surface)
+{
+  std::vector<std::vector<vtkTypeUInt32>> triangles(surface->GetNumberOfCells());
+  for (vtkIdType cell = 0; cell < surface->GetNumberOfCells(); ++cell)
+  {
+    vtkNew<vtkIdList> corners;
+    surface->GetCellPoints(cell, corners);
+    for (vtkIdType i = 0; i < corners->GetNumberOfIds(); ++i)
+    {
+      const auto bits = BitsOfPoint(surface, corners->GetId(i));
+      triangles[cell].insert(triangles[cell].end(), bits.begin(), bits.end());
+    }
+  }
+  std::sort(triangles.begin(), triangles.end());
+  return triangles;
+}
+
+bool SameSurface(vtkPolyData* a, vtkPolyData* b)
+{
+  return a->GetNumberOfPoints() == b->GetNumberOfPoints() && Triangles(a) == Triangles(b);
+}
+
+template <typename ContourT>
+void SetValues(ContourT* contour, const std::vector<double>& values)
+{
+  contour->SetNumberOfContours(static_cast<int>(values.size()));
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    contour->SetValue(static_cast<int>(i), values[i]);
+  }
+  contour->ComputeGradientsOn();
+}
+
+//------------------------------------------------------------------------------
+void TestEqualsFlyingEdges()
+{
+  const Dims shapes[] = { { 2, 2, 2 }, { 5, 9, 13 }, { 9, 2, 17 }, { 33, 10, 7 }, { 21, 22, 23 } };
+  const std::vector<double> values = { 10.0, -100.25, 1e9, 10.0 };
+  for (const Dims& dims : shapes)
+  {
+    const auto compressed = Compress(FloatImage(dims));
+    vtkNew<vtkImageZFPDecompress> decompress;
+    decompress->SetInputData(compressed);
+    vtkNew<vtkFlyingEdges3D> expected;
+    expected->SetInputConnection(decompress->GetOutputPort());
+    SetValues(expected.Get(), values);
+    expected->Update();
+    for (int brickSize : { 4, 8, 64 })
+    {
+      vtkNew<vtkZFPContour> contour;
+      contour->SetInputData(compressed);
+      contour->SetBrickSize(brickSize);
+      SetValues(contour.Get(), values);
+      contour->Update();
+      EXPECT(contour->GetOutput()->GetNumberOfCells() > 0, dims[0] << " wide");
+      EXPECT(SameSurface(contour->GetOutput(), expected->GetOutput()),
+        dims[0] << " wide in bricks of " << brickSize);
+      EXPECT(contour->GetOutput()->GetFieldData()->GetNumberOfArrays() == 0, "no stream is left");
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+// Order and all, whatever threads there are and wherever they come from.
+void TestThreadsDoNotShow()
+{
+  const auto compressed = Compress(FloatImage({ 40, 41, 42 }));
+  std::vector<vtkSmartPointer<vtkPolyData>> surfaces;
+  for (const char* backend : { "Sequential", "STDThread" })
+  {
+    for (int threads : { 0, 1, 3 })
+    {
+      vtkSMPTools::SetBackend(backend);
+      vtkNew<vtkZFPContour> contour;
+      contour->SetInputData(compressed);
+      contour->SetBrickSize(8);
+      contour->SetNumberOfThreads(threads);
+      contour->Update();
+      surfaces.emplace_back(contour->GetOutput());
+      EXPECT(std::string(vtkSMPTools::GetBackend()) == backend, "the backend is as it was");
+    }
+  }
+  for (const auto& surface : surfaces)
+  {
+    bool same = SameSurface(surface, surfaces[0]);
+    for (vtkIdType point = 0; same && point < surface->GetNumberOfPoints(); ++point)
+    {
+      same = BitsOfPoint(surface, point) == BitsOfPoint(surfaces[0], point);
+    }
+    EXPECT(same, "another number of threads");
+  }
+}
+
+//------------------------------------------------------------------------------
+void TestDecodesWhatItNeeds()
+{
+  vtkNew<vtkFloatArray> ramp;
+  for (int i = 0; i < 33 * 33 * 33; ++i)
+  {
+    ramp->InsertNextValue(static_cast<float>(i % 33));
+  }
+  vtkNew<vtkZFPContour> contour;
+  contour->SetInputData(Compress(Image({ 33, 33, 33 }, ramp), 32.0));
+  contour->SetBrickSize(8);
+  contour->SetNumberOfThreads(1);
+  contour->SetValue(0, 20.5);
+  contour->Update();
+  EXPECT(contour->GetNumberOfBricks() == 64, contour->GetNumberOfBricks());
+  EXPECT(contour->GetNumberOfDecodedBricks() == 64, "ranges are not known at first");
+  // 8 cells, a sample more, one on either side, in whole blocks: one brick at a time
+  EXPECT(contour->GetPeakSampleBytes() == 4 * 16 * 16 * 16, contour->GetPeakSampleBytes());
+  contour->SetValue(0, 10.5);
+  contour->Update();
+  EXPECT(contour->GetNumberOfDecodedBricks() == 16, contour->GetNumberOfDecodedBricks());
+  contour->SetValue(0, 100.0);
+  contour->Update();
+  EXPECT(contour->GetNumberOfDecodedBricks() == 0, contour->GetNumberOfDecodedBricks());
+  contour->SetInputData(Compress(FloatImage({ 33, 33, 33 })));
+  contour->Update();
+  EXPECT(contour->GetNumberOfDecodedBricks() == 64, "another volume");
+}
+
+//------------------------------------------------------------------------------
+void TestAbort()
+{
+  vtkNew<vtkZFPContour> contour;
+  contour->SetInputData(Compress(FloatImage({ 40, 40, 40 })));
+  contour->SetBrickSize(4);
+  contour->SetNumberOfThreads(1);
+  vtkNew<vtkCallbackCommand> abort;
+  abort->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
+    { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(true); });
+  const auto tag = contour->AddObserver("ProgressEvent", abort);
+  contour->Update();
+  EXPECT(contour->GetOutput()->GetNumberOfPoints() == 0, "aborted");
+  EXPECT(contour->GetNumberOfDecodedBricks() < contour->GetNumberOfBricks(), "stopped early");
+  contour->RemoveObserver(tag);
+  contour->SetAbortExecute(false);
+  contour->Update();
+  EXPECT(contour->GetOutput()->GetNumberOfPoints() > 0, "taken up again");
+}
+
+//------------------------------------------------------------------------------
+void TestErrors()
+{
+  vtkNew<vtkZFPContour> contour;
+  Errors errors(contour);
+  contour->SetInputData(FloatImage({ 4, 4, 4 }));
+  contour->Update();
+  EXPECT(errors.IsOne("ProgIso.ZFP.Stream (compress it first)"), errors.Describe());
+  EXPECT(contour->GetOutput()->GetNumberOfPoints() == 0, "empty");
+  errors.Texts.clear();
+  contour->SetInputData(Compress(FloatImage({ 4, 4, 4 })));
+  contour->SetValue(0, std::numeric_limits<double>::quiet_NaN());
+  contour->Update();
+  EXPECT(errors.IsOne("must be finite"), errors.Describe());
+}
+}
+
+int main()
+{
+  TestEqualsFlyingEdges();
+  TestThreadsDoNotShow();
+  TestDecodesWhatItNeeds();
+  TestAbort();
+  TestErrors();
+  return test::Result();
+}
