@@ -34,15 +34,15 @@
 namespace
 {
 /**
- * Draws its volume mapper in the opaque pass. ParaView's own class draws it in the volumetric pass,
- * after translucent geometry, and only when the input has scalars, which a compressed volume has
- * not.
+ * Draws its volume mapper in the opaque pass, or where isosurfaces are translucent in the
+ * volumetric pass, as vtkIsosurfaceVolume does. ParaView's own class draws it always in the latter,
+ * and only when the input has scalars, which a compressed volume has not.
  */
-class vtkPVOpaqueLODVolume : public vtkPVLODVolume
+class vtkPVIsosurfaceLODVolume : public vtkPVLODVolume
 {
 public:
-  static vtkPVOpaqueLODVolume* New();
-  vtkTypeMacro(vtkPVOpaqueLODVolume, vtkPVLODVolume);
+  static vtkPVIsosurfaceLODVolume* New();
+  vtkTypeMacro(vtkPVIsosurfaceLODVolume, vtkPVLODVolume);
 
   int RenderOpaqueGeometry(vtkViewport* viewport) override
   {
@@ -50,25 +50,38 @@ public:
     {
       return this->Superclass::RenderOpaqueGeometry(viewport);
     }
+    return this->IsTranslucent() ? 0 : this->RenderIsosurfaces(viewport);
+  }
+
+  int RenderVolumetricGeometry(vtkViewport* viewport) override
+  {
+    return !this->ShowsOutline() && this->IsTranslucent() ? this->RenderIsosurfaces(viewport) : 0;
+  }
+
+protected:
+  vtkPVIsosurfaceLODVolume() = default;
+  ~vtkPVIsosurfaceLODVolume() override = default;
+
+private:
+  bool IsTranslucent()
+  {
+    return vtkProgressiveIsosurfaceMapper::IsTranslucent(this->GetProperty());
+  }
+
+  int RenderIsosurfaces(vtkViewport* viewport)
+  {
     const int drawn = this->LODProp->RenderVolumetricGeometry(viewport);
     this->EstimatedRenderTime = this->LODProp->GetEstimatedRenderTime();
     return drawn;
   }
 
-  int RenderVolumetricGeometry(vtkViewport*) override { return 0; }
-
-protected:
-  vtkPVOpaqueLODVolume() = default;
-  ~vtkPVOpaqueLODVolume() override = default;
-
-private:
   /// True on processes that have no data and show its outline in place of it.
   bool ShowsOutline() { return this->SelectLOD() != this->HighLODId; }
 
-  vtkPVOpaqueLODVolume(const vtkPVOpaqueLODVolume&) = delete;
-  void operator=(const vtkPVOpaqueLODVolume&) = delete;
+  vtkPVIsosurfaceLODVolume(const vtkPVIsosurfaceLODVolume&) = delete;
+  void operator=(const vtkPVIsosurfaceLODVolume&) = delete;
 };
-vtkStandardNewMacro(vtkPVOpaqueLODVolume);
+vtkStandardNewMacro(vtkPVIsosurfaceLODVolume);
 
 // ---- what the processes that share an image agree on
 int NumberOfProcesses()
@@ -136,7 +149,7 @@ vtkStandardNewMacro(vtkProgressiveIsosurfaceRepresentation);
 vtkProgressiveIsosurfaceRepresentation::vtkProgressiveIsosurfaceRepresentation()
 {
   this->VolumeMapper = vtkSmartPointer<vtkProgressiveIsosurfaceMapper>::New();
-  this->Actor = vtkSmartPointer<vtkPVOpaqueLODVolume>::New();
+  this->Actor = vtkSmartPointer<vtkPVIsosurfaceLODVolume>::New();
   this->Actor->SetProperty(this->Property);
   this->Actor->SetLODMapper(this->OutlineMapper);
   this->Property->ShadeOn();
@@ -159,7 +172,11 @@ int vtkProgressiveIsosurfaceRepresentation::ProcessViewRequest(
   {
     // The superclass asks for ordered compositing, as translucent volumes need it; opaque surfaces
     // composite by depth.
-    outInfo->Remove(vtkPVRenderView::NEED_ORDERED_COMPOSITING());
+    this->UpdateLook();
+    if (!vtkProgressiveIsosurfaceMapper::IsTranslucent(this->Property))
+    {
+      outInfo->Remove(vtkPVRenderView::NEED_ORDERED_COMPOSITING());
+    }
     vtkPVRenderView::SetGeometryBounds(inInfo, this, this->DataBounds, this->Actor->GetMatrix());
   }
   return 1;
@@ -371,16 +388,16 @@ void vtkProgressiveIsosurfaceRepresentation::UpdateMapperParameters()
     this->DrawnArray.Association == vtkDataObject::FIELD_ASSOCIATION_CELLS
       ? VTK_SCALAR_MODE_USE_CELL_FIELD_DATA
       : VTK_SCALAR_MODE_USE_POINT_FIELD_DATA);
-  const bool mapped = this->ColorMap && this->IsColoredByDrawnArray();
-  this->Property->SetColor(mapped ? this->ColorMap.Get() : this->SolidColor.Get());
-  this->UpdateOpacity(mapped);
+  this->UpdateLook();
   this->Actor->SetMapper(this->VolumeMapper);
   this->Actor->SetVisibility(this->CanDraw);
 }
 
 //------------------------------------------------------------------------------
-void vtkProgressiveIsosurfaceRepresentation::UpdateOpacity(bool mapped)
+void vtkProgressiveIsosurfaceRepresentation::UpdateLook()
 {
+  const bool mapped = this->ColorMap && this->IsColoredByDrawnArray();
+  this->Property->SetColor(mapped ? this->ColorMap.Get() : this->SolidColor.Get());
   auto* map = vtkDiscretizableColorTransferFunction::SafeDownCast(this->ColorMap);
   vtkPiecewiseFunction* opacities =
     mapped && map && map->GetEnableOpacityMapping() ? map->GetScalarOpacityFunction() : nullptr;

@@ -5,16 +5,16 @@
  * @brief   ParaView representation of image data as a progressive isosurface
  *
  * Shows plain image data and compressed volumes (see vtkCompressedVolume) through
- * vtkProgressiveIsosurfaceMapper. The surface is opaque, so it is drawn in the opaque pass, where
- * translucent geometry blends over it, and it asks for no ordered compositing. Colour: the colour
- * map at the isovalue when the representation is coloured by the array that is drawn, the solid
- * colour otherwise.
+ * vtkProgressiveIsosurfaceMapper. Opaque surfaces are drawn in the opaque pass, where translucent
+ * geometry blends over them, and ask for no ordered compositing; translucent ones are drawn with
+ * the volumes. Colour: the colour map at the isovalue when the representation is coloured by the
+ * array that is drawn, the solid colour otherwise.
  *
  * Image data only: rectilinear grids and composite data are refused with an error.
  *
- * Where several processes share an image, each draws its own piece, and ParaView composites by
- * depth. A process takes with its piece the samples around it that normals need, in whole blocks of
- * the whole image, so that every process decodes the same values and no seam shows: it asks the
+ * Where several processes share an image, each draws its own piece, and ParaView composites them. A
+ * process takes with its piece the samples around it that normals need, in whole blocks of the
+ * whole image, so that every process decodes the same values and no seam shows: it asks the
  * pipeline for ghost levels, and where that has none, exchanges them with the others.
  */
 
@@ -124,8 +124,8 @@ private:
   /// True when the representation is coloured by the array that is drawn.
   bool IsColoredByDrawnArray();
 
-  /// Makes the property's opacity function; one node an isovalue.
-  void UpdateOpacity(bool mapped);
+  /// Sets the property's colours, and its opacities: a function with one node an isovalue.
+  void UpdateLook();
 
   ArraySelection IsosurfaceArray; ///< as chosen by the user, its name empty for the active scalars
   ArraySelection DrawnArray;      ///< the array of the present input

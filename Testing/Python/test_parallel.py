@@ -12,7 +12,8 @@ from test_paraview import HERE, WARNINGS, build, under_x  # noqa: F401 (build is
 pytestmark = pytest.mark.paraview
 
 CASES = ["plain", "compressed", "decompressed", "cells", "cells-compressed"]
-CASES += ["file-compressed", "file-plain", "file-zfp", "pieces", "among-meshes"]
+CASES += ["file-compressed", "file-plain", "file-zfp", "pieces", "several", "translucent"]
+CASES += ["among-meshes", "translucent-among-meshes"]
 
 #: Open MPI in a container; processes that share few cores should each take one.
 MPI = {

@@ -45,6 +45,7 @@ assert isovalues() == [150.0]
 display.Isovalues = [120.0, 150.0, 200.0]
 simple.Render(view)
 assert isovalues() == [120.0, 150.0, 200.0] == list(display.Isovalues), isovalues()
+assert covered(screenshot(view, "panel_several.png")) > covered(first)
 display.Isovalues = [150.0]
 simple.Render(view)
 assert isovalues() == [150.0], isovalues()
@@ -73,6 +74,8 @@ display.Specular, display.SpecularPower = 0.0, power
 display.Opacity = 0.25
 simple.Render(view)
 check_close(drawn_property().GetScalarOpacity().GetValue(150.0), 0.25, "opacity")
+faint = screenshot(view, "panel_faint.png")
+assert abs(faint - faint[0, 0]).mean() < 0.8 * abs(first - first[0, 0]).mean(), "the background is seen through it"
 simple.ColorBy(display, ("POINTS", "RTData"))
 display.SetScalarBarVisibility(view, False)
 colours, opacities = simple.GetColorTransferFunction("RTData"), simple.GetOpacityTransferFunction("RTData")

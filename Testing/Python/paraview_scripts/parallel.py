@@ -78,10 +78,15 @@ image.GetPointData().SetScalars(array)
 """
 shoot(pieces, "pieces", CompressionRate=8)
 
+# several isosurfaces, and translucent ones, which composite in the order of the pieces
+shoot(wavelet, "several", Isovalues=[90.0, 210.0], CompressionRate=4)
+shoot(compressed, "translucent", Isovalues=[120.0, 200.0], Opacity=0.4)
+
 # among other geometry, which hides it and is hidden by it
 sphere = simple.Sphere(Radius=9, Center=[16, 8, 18], ThetaResolution=40, PhiResolution=40)
 shown = simple.Show(sphere, view)
 shown.DiffuseColor = [0.3, 0.5, 0.9]
-shoot(compressed, "among-meshes")
+shoot(compressed, "among-meshes", Opacity=1.0)
+shoot(compressed, "translucent-among-meshes", Opacity=0.4)
 
 finish(processes=int(numpy.asarray(processes)))
