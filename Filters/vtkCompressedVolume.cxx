@@ -312,36 +312,32 @@ std::string vtkCompressedVolume::ReadNumbers(vtkImageData* image)
 }
 
 //------------------------------------------------------------------------------
-// Sets Extent to that of the stream: the image's own, or one around it that the stream names.
-bool vtkCompressedVolume::FindExtent(vtkImageData* image, const vtkTypeInt64 dims[3])
+// Sets Extent to that of the stream: the image's own, or where that is of another size, the one
+// that the stream names.
+void vtkCompressedVolume::FindExtent(vtkImageData* image, const vtkTypeInt64 dims[3])
 {
   image->GetExtent(this->Extent);
   const int cells = this->Association == CellData ? 1 : 0;
   const auto fits = [&](const vtkTypeInt64* extent)
   {
-    return extent[1] - extent[0] + 1 - cells == dims[0] &&
-      extent[3] - extent[2] + 1 - cells == dims[1] && extent[5] - extent[4] + 1 - cells == dims[2];
+    const vtkTypeInt64 most = std::numeric_limits<int>::max() / 2;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const vtkTypeInt64 low = extent[2 * axis], high = extent[2 * axis + 1];
+      if (low < -most || high > most || high - low + 1 - cells != dims[axis])
+      {
+        return false;
+      }
+    }
+    return true;
   };
   vtkTypeInt64 extent[6];
   std::copy_n(this->Extent, 6, extent);
-  if (fits(extent))
+  if (!fits(extent) && GetIntegers(image->GetFieldData(), ExtentName, 6, extent).empty() &&
+    fits(extent))
   {
-    return true;
+    std::copy_n(extent, 6, this->Extent);
   }
-  if (!GetIntegers(image->GetFieldData(), ExtentName, 6, extent).empty() || !fits(extent))
-  {
-    return false;
-  }
-  const int own[6] = { this->Extent[0], this->Extent[1], this->Extent[2], this->Extent[3],
-    this->Extent[4], this->Extent[5] };
-  const vtkTypeInt64 most = std::numeric_limits<int>::max() / 2;
-  if (!std::all_of(
-        extent, extent + 6, [&](vtkTypeInt64 value) { return value >= -most && value <= most; }))
-  {
-    return false;
-  }
-  std::copy_n(extent, 6, this->Extent);
-  return Contains(this->Extent, own);
 }
 
 //------------------------------------------------------------------------------
@@ -353,32 +349,30 @@ std::string vtkCompressedVolume::CheckGeometry(vtkImageData* image)
   {
     return error;
   }
-  const bool found = this->FindExtent(image, dims);
-  const int* extent = found ? this->Extent : image->GetExtent();
+  this->FindExtent(image, dims);
   const bool cells = this->Association == CellData;
   std::ostringstream message;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const vtkTypeInt64 expected =
-      static_cast<vtkTypeInt64>(extent[2 * axis + 1]) - extent[2 * axis] + (cells ? 0 : 1);
+    const vtkTypeInt64 expected = static_cast<vtkTypeInt64>(this->Extent[2 * axis + 1]) -
+      this->Extent[2 * axis] + (cells ? 0 : 1);
     if (dims[axis] != expected)
     {
       message << DimensionsName << " is " << dims[axis] << " along axis " << axis
               << ", but the image has " << expected << (cells ? " cells" : " points") << " there";
-      break;
+      return message.str();
     }
     if (expected < 2 || expected > std::numeric_limits<int>::max())
     {
       message << "it has " << expected << (cells ? " cells" : " points") << " along axis " << axis
               << ", at least 2 and at most 2^31-1 are needed";
-      break;
+      return message.str();
     }
   }
-  if (!found && message.str().empty())
-  {
-    message << ExtentName << " does not contain the image's extent";
-  }
-  return message.str();
+  return Contains(this->Extent, image->GetExtent())
+    ? std::string()
+    : "its stream is that of another piece (one compressed volume cannot be put together from "
+      "several)";
 }
 
 //------------------------------------------------------------------------------

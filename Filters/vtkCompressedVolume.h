@@ -230,7 +230,7 @@ private:
   std::string ReadNumbers(vtkImageData* image);
   std::string ReadStreamAndName(vtkImageData* image);
   std::string CheckGeometry(vtkImageData* image);
-  bool FindExtent(vtkImageData* image, const vtkTypeInt64 dims[3]);
+  void FindExtent(vtkImageData* image, const vtkTypeInt64 dims[3]);
   void CopyBlocks(const int first[3], const int count[3], vtkUnsignedCharArray* target) const;
 
   int BlockBits = 0;

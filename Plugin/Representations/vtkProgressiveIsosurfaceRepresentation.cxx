@@ -8,6 +8,7 @@
 #include "vtkCompressedVolume.h"
 #include "vtkContourValues.h"
 #include "vtkDataArray.h"
+#include "vtkDiscretizableColorTransferFunction.h"
 #include "vtkExtractVOI.h"
 #include "vtkGhostCellsGenerator.h"
 #include "vtkImageData.h"
@@ -20,6 +21,7 @@
 #include "vtkPVLODVolume.h"
 #include "vtkPVRenderView.h"
 #include "vtkPVView.h"
+#include "vtkPiecewiseFunction.h"
 #include "vtkPointData.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkProgressiveIsosurfaceMapper.h"
@@ -27,18 +29,20 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkVolumeProperty.h"
 
+#include <algorithm>
+
 namespace
 {
 /**
- * Draws its volume mapper in the opaque pass. ParaView's own class draws it in the volumetric pass,
- * after translucent geometry, and only when the input has scalars, which a compressed volume has
- * not.
+ * Draws its volume mapper in the opaque pass, or where isosurfaces are translucent in the
+ * volumetric pass, as vtkIsosurfaceVolume does. ParaView's own class draws it always in the latter,
+ * and only when the input has scalars, which a compressed volume has not.
  */
-class vtkPVOpaqueLODVolume : public vtkPVLODVolume
+class vtkPVIsosurfaceLODVolume : public vtkPVLODVolume
 {
 public:
-  static vtkPVOpaqueLODVolume* New();
-  vtkTypeMacro(vtkPVOpaqueLODVolume, vtkPVLODVolume);
+  static vtkPVIsosurfaceLODVolume* New();
+  vtkTypeMacro(vtkPVIsosurfaceLODVolume, vtkPVLODVolume);
 
   int RenderOpaqueGeometry(vtkViewport* viewport) override
   {
@@ -46,25 +50,38 @@ public:
     {
       return this->Superclass::RenderOpaqueGeometry(viewport);
     }
+    return this->IsTranslucent() ? 0 : this->RenderIsosurfaces(viewport);
+  }
+
+  int RenderVolumetricGeometry(vtkViewport* viewport) override
+  {
+    return !this->ShowsOutline() && this->IsTranslucent() ? this->RenderIsosurfaces(viewport) : 0;
+  }
+
+protected:
+  vtkPVIsosurfaceLODVolume() = default;
+  ~vtkPVIsosurfaceLODVolume() override = default;
+
+private:
+  bool IsTranslucent()
+  {
+    return vtkProgressiveIsosurfaceMapper::IsTranslucent(this->GetProperty());
+  }
+
+  int RenderIsosurfaces(vtkViewport* viewport)
+  {
     const int drawn = this->LODProp->RenderVolumetricGeometry(viewport);
     this->EstimatedRenderTime = this->LODProp->GetEstimatedRenderTime();
     return drawn;
   }
 
-  int RenderVolumetricGeometry(vtkViewport*) override { return 0; }
-
-protected:
-  vtkPVOpaqueLODVolume() = default;
-  ~vtkPVOpaqueLODVolume() override = default;
-
-private:
   /// True on processes that have no data and show its outline in place of it.
   bool ShowsOutline() { return this->SelectLOD() != this->HighLODId; }
 
-  vtkPVOpaqueLODVolume(const vtkPVOpaqueLODVolume&) = delete;
-  void operator=(const vtkPVOpaqueLODVolume&) = delete;
+  vtkPVIsosurfaceLODVolume(const vtkPVIsosurfaceLODVolume&) = delete;
+  void operator=(const vtkPVIsosurfaceLODVolume&) = delete;
 };
-vtkStandardNewMacro(vtkPVOpaqueLODVolume);
+vtkStandardNewMacro(vtkPVIsosurfaceLODVolume);
 
 // ---- what the processes that share an image agree on
 int NumberOfProcesses()
@@ -110,6 +127,18 @@ void FindWholeExtent(const int own[6], int whole[6])
   }
 }
 
+// The image without its ghost cells and arrays, which a compressed volume has none of.
+vtkSmartPointer<vtkImageData> WithoutGhosts(vtkImageData* image)
+{
+  int extent[6];
+  vtkCompressedVolume::GetOwnExtent(image, extent);
+  auto own = vtkSmartPointer<vtkImageData>::New();
+  own->CopyStructure(image);
+  own->SetExtent(extent);
+  own->GetFieldData()->PassData(image->GetFieldData());
+  return own;
+}
+
 constexpr int SPECULATION_ON = 64;
 constexpr int SPECULATION_OFF = 1;
 }
@@ -120,10 +149,11 @@ vtkStandardNewMacro(vtkProgressiveIsosurfaceRepresentation);
 vtkProgressiveIsosurfaceRepresentation::vtkProgressiveIsosurfaceRepresentation()
 {
   this->VolumeMapper = vtkSmartPointer<vtkProgressiveIsosurfaceMapper>::New();
-  this->Actor = vtkSmartPointer<vtkPVOpaqueLODVolume>::New();
+  this->Actor = vtkSmartPointer<vtkPVIsosurfaceLODVolume>::New();
   this->Actor->SetProperty(this->Property);
   this->Actor->SetLODMapper(this->OutlineMapper);
   this->Property->ShadeOn();
+  this->Property->SetScalarOpacity(this->SurfaceOpacity);
   this->SetDiffuseColor(1.0, 1.0, 1.0);
 }
 
@@ -142,7 +172,11 @@ int vtkProgressiveIsosurfaceRepresentation::ProcessViewRequest(
   {
     // The superclass asks for ordered compositing, as translucent volumes need it; opaque surfaces
     // composite by depth.
-    outInfo->Remove(vtkPVRenderView::NEED_ORDERED_COMPOSITING());
+    this->UpdateLook();
+    if (!vtkProgressiveIsosurfaceMapper::IsTranslucent(this->Property))
+    {
+      outInfo->Remove(vtkPVRenderView::NEED_ORDERED_COMPOSITING());
+    }
     vtkPVRenderView::SetGeometryBounds(inInfo, this, this->DataBounds, this->Actor->GetMatrix());
   }
   return 1;
@@ -220,10 +254,7 @@ vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::MakePiece(
 vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::MakeCompressedPiece(
   vtkImageData* image, const int own[6])
 {
-  auto piece = vtkSmartPointer<vtkImageData>::New();
-  piece->CopyStructure(image);
-  piece->SetExtent(const_cast<int*>(own));
-  piece->GetFieldData()->PassData(image->GetFieldData());
+  vtkSmartPointer<vtkImageData> piece = WithoutGhosts(image);
   vtkNew<vtkCompressedVolume> volume;
   if (this->CanDraw && piece->GetNumberOfPoints() > 0 && volume->Read(piece))
   {
@@ -294,7 +325,12 @@ bool vtkProgressiveIsosurfaceRepresentation::FindDrawnArray(vtkImageData* image)
 bool vtkProgressiveIsosurfaceRepresentation::FindCompressedArray(vtkImageData* image)
 {
   vtkNew<vtkCompressedVolume> volume;
-  if (!volume->Read(image))
+  vtkSmartPointer<vtkImageData> own = WithoutGhosts(image);
+  if (own->GetNumberOfPoints() == 0)
+  {
+    return false; // there is more than one process, and this one has no piece
+  }
+  if (!volume->Read(own))
   {
     vtkErrorMacro("Progressive Isosurface: " << volume->GetErrorMessage());
     return false;
@@ -352,10 +388,33 @@ void vtkProgressiveIsosurfaceRepresentation::UpdateMapperParameters()
     this->DrawnArray.Association == vtkDataObject::FIELD_ASSOCIATION_CELLS
       ? VTK_SCALAR_MODE_USE_CELL_FIELD_DATA
       : VTK_SCALAR_MODE_USE_POINT_FIELD_DATA);
-  const bool mapped = this->ColorMap && this->IsColoredByDrawnArray();
-  this->Property->SetColor(mapped ? this->ColorMap.Get() : this->SolidColor.Get());
+  this->UpdateLook();
   this->Actor->SetMapper(this->VolumeMapper);
   this->Actor->SetVisibility(this->CanDraw);
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::UpdateLook()
+{
+  const bool mapped = this->ColorMap && this->IsColoredByDrawnArray();
+  this->Property->SetColor(mapped ? this->ColorMap.Get() : this->SolidColor.Get());
+  auto* map = vtkDiscretizableColorTransferFunction::SafeDownCast(this->ColorMap);
+  vtkPiecewiseFunction* opacities =
+    mapped && map && map->GetEnableOpacityMapping() ? map->GetScalarOpacityFunction() : nullptr;
+  vtkContourValues* values = this->Property->GetIsoSurfaceValues();
+  vtkNew<vtkPiecewiseFunction> wanted;
+  for (int i = 0; i < values->GetNumberOfContours(); ++i)
+  {
+    const double value = values->GetValue(i);
+    wanted->AddPoint(value, this->Opacity * (opacities ? opacities->GetValue(value) : 1.0));
+  }
+  const int nodes = wanted->GetSize();
+  if (nodes != this->SurfaceOpacity->GetSize() ||
+    !std::equal(wanted->GetDataPointer(), wanted->GetDataPointer() + 2 * nodes,
+      this->SurfaceOpacity->GetDataPointer()))
+  {
+    this->SurfaceOpacity->DeepCopy(wanted);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -378,13 +437,22 @@ void vtkProgressiveIsosurfaceRepresentation::SetIsosurfaceComponent(int componen
 }
 
 //------------------------------------------------------------------------------
-void vtkProgressiveIsosurfaceRepresentation::SetIsovalue(double value)
+void vtkProgressiveIsosurfaceRepresentation::SetNumberOfIsovalues(int number)
 {
   vtkContourValues* values = this->Property->GetIsoSurfaceValues();
-  if (values->GetNumberOfContours() != 1 || values->GetValue(0) != value)
+  if (values->GetNumberOfContours() != number)
   {
-    values->SetNumberOfContours(1);
-    values->SetValue(0, value);
+    values->SetNumberOfContours(number);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetIsovalue(int index, double value)
+{
+  vtkContourValues* values = this->Property->GetIsoSurfaceValues();
+  if (index >= values->GetNumberOfContours() || values->GetValue(index) != value)
+  {
+    values->SetValue(index, value);
   }
 }
 
@@ -394,6 +462,12 @@ void vtkProgressiveIsosurfaceRepresentation::SetDiffuseColor(double red, double 
   // One node: the same colour at every isovalue.
   this->SolidColor->RemoveAllPoints();
   this->SolidColor->AddRGBPoint(0.0, red, green, blue);
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetOpacity(double opacity)
+{
+  this->Opacity = opacity;
 }
 
 //------------------------------------------------------------------------------
@@ -418,36 +492,6 @@ void vtkProgressiveIsosurfaceRepresentation::SetSpeculation(bool on)
 void vtkProgressiveIsosurfaceRepresentation::SetMemoryBudget(int mebibytes)
 {
   this->GetIsosurfaceMapper()->SetMemoryBudget(static_cast<vtkTypeInt64>(mebibytes) << 20);
-}
-
-//------------------------------------------------------------------------------
-int vtkProgressiveIsosurfaceRepresentation::GetNumberOfPasses()
-{
-  return this->GetStatistics()->GetNumberOfPasses();
-}
-
-//------------------------------------------------------------------------------
-double vtkProgressiveIsosurfaceRepresentation::GetCompletedFraction()
-{
-  return this->GetIsosurfaceMapper()->GetCompletedFraction();
-}
-
-//------------------------------------------------------------------------------
-double vtkProgressiveIsosurfaceRepresentation::GetTotalMilliseconds()
-{
-  return this->GetStatistics()->GetTotalMilliseconds();
-}
-
-//------------------------------------------------------------------------------
-double vtkProgressiveIsosurfaceRepresentation::GetGPUBytes()
-{
-  return static_cast<double>(this->GetStatistics()->GetTotalBytes());
-}
-
-//------------------------------------------------------------------------------
-double vtkProgressiveIsosurfaceRepresentation::GetCompressedBytes()
-{
-  return static_cast<double>(this->GetStatistics()->GetCompressedBytes());
 }
 
 //------------------------------------------------------------------------------

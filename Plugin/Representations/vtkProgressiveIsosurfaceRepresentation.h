@@ -5,16 +5,16 @@
  * @brief   ParaView representation of image data as a progressive isosurface
  *
  * Shows plain image data and compressed volumes (see vtkCompressedVolume) through
- * vtkProgressiveIsosurfaceMapper. The surface is opaque, so it is drawn in the opaque pass, where
- * translucent geometry blends over it, and it asks for no ordered compositing. Colour: the colour
- * map at the isovalue when the representation is coloured by the array that is drawn, the solid
- * colour otherwise.
+ * vtkProgressiveIsosurfaceMapper. Opaque surfaces are drawn in the opaque pass, where translucent
+ * geometry blends over them, and ask for no ordered compositing; translucent ones are drawn with
+ * the volumes. Colour: the colour map at the isovalue when the representation is coloured by the
+ * array that is drawn, the solid colour otherwise.
  *
  * Image data only: rectilinear grids and composite data are refused with an error.
  *
- * Where several processes share an image, each draws its own piece, and ParaView composites by
- * depth. A process takes with its piece the samples around it that normals need, in whole blocks of
- * the whole image, so that every process decodes the same values and no seam shows: it asks the
+ * Where several processes share an image, each draws its own piece, and ParaView composites them. A
+ * process takes with its piece the samples around it that normals need, in whole blocks of the
+ * whole image, so that every process decodes the same values and no seam shows: it asks the
  * pipeline for ghost levels, and where that has none, exchanges them with the others.
  */
 
@@ -51,11 +51,17 @@ public:
   /// The component of that array.
   void SetIsosurfaceComponent(int component);
 
-  /// The isovalue, in the units of the array.
-  void SetIsovalue(double value);
+  ///@{
+  /// The isovalues, in the units of the array; they become those of the volume property.
+  void SetNumberOfIsovalues(int number);
+  void SetIsovalue(int index, double value);
+  ///@}
 
   /// Colour of the surface where no colour map applies.
   void SetDiffuseColor(double red, double green, double blue);
+
+  /// Opacity of the surface, 0 … 1. A colour map that maps opacities has a say too.
+  void SetOpacity(double opacity);
 
   /// Colour map, used when the representation is coloured by the isosurface array.
   void SetColor(vtkColorTransferFunction* colorMap);
@@ -71,13 +77,10 @@ public:
   ///@}
 
   ///@{
-  /// Statistics of the last image, for the information properties (bytes as double: ParaView's
-  /// panel shows no 64-bit integers).
-  int GetNumberOfPasses();
-  double GetCompletedFraction();
-  double GetTotalMilliseconds();
-  double GetGPUBytes();
-  double GetCompressedBytes();
+  /// What draws the surface on this process, and the statistics of its last image. See
+  /// vtkPVIsosurfaceInformation for those of all processes.
+  vtkProgressiveIsosurfaceMapper* GetIsosurfaceMapper();
+  vtkProgressiveIsosurfaceStatistics* GetStatistics();
   ///@}
 
 protected:
@@ -98,9 +101,6 @@ private:
     int Association = 0; // vtkDataObject::FIELD_ASSOCIATION_POINTS
     std::string Name;
   };
-
-  vtkProgressiveIsosurfaceMapper* GetIsosurfaceMapper();
-  vtkProgressiveIsosurfaceStatistics* GetStatistics();
 
   ///@{
   /// Sets DrawnArray from the input; false after an error that says why nothing can be drawn.
@@ -124,10 +124,15 @@ private:
   /// True when the representation is coloured by the array that is drawn.
   bool IsColoredByDrawnArray();
 
+  /// Sets the property's colours, and its opacities: a function with one node an isovalue.
+  void UpdateLook();
+
   ArraySelection IsosurfaceArray; ///< as chosen by the user, its name empty for the active scalars
   ArraySelection DrawnArray;      ///< the array of the present input
   vtkSmartPointer<vtkColorTransferFunction> ColorMap;
   vtkNew<vtkColorTransferFunction> SolidColor;
+  double Opacity = 1.0;
+  vtkNew<vtkPiecewiseFunction> SurfaceOpacity;
   bool CanDraw = false;
 
   vtkProgressiveIsosurfaceRepresentation(const vtkProgressiveIsosurfaceRepresentation&) = delete;

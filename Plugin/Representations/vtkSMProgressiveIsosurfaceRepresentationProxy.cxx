@@ -4,11 +4,17 @@
 
 #include "vtkCommand.h"
 #include "vtkObjectFactory.h"
+#include "vtkPVIsosurfaceInformation.h"
+#include "vtkPVSession.h"
 #include "vtkSMPropertyHelper.h"
 
 #include <cstring>
 
 vtkStandardNewMacro(vtkSMProgressiveIsosurfaceRepresentationProxy);
+
+//------------------------------------------------------------------------------
+vtkSMProgressiveIsosurfaceRepresentationProxy::vtkSMProgressiveIsosurfaceRepresentationProxy() =
+  default;
 
 //------------------------------------------------------------------------------
 vtkSMProgressiveIsosurfaceRepresentationProxy::~vtkSMProgressiveIsosurfaceRepresentationProxy()
@@ -37,6 +43,29 @@ void vtkSMProgressiveIsosurfaceRepresentationProxy::OnImage()
   {
     this->UpdatePropertyInformation();
   }
+}
+
+//------------------------------------------------------------------------------
+vtkPVIsosurfaceInformation* vtkSMProgressiveIsosurfaceRepresentationProxy::GetStatistics()
+{
+  return this->Statistics;
+}
+
+//------------------------------------------------------------------------------
+void vtkSMProgressiveIsosurfaceRepresentationProxy::UpdatePropertyInformationInternal(
+  vtkSMProperty* vtkNotUsed(property))
+{
+  this->GatherInformation(this->Statistics, vtkPVSession::CLIENT | vtkPVSession::RENDER_SERVER);
+  const auto set = [this](const char* name, double value)
+  { vtkSMPropertyHelper(this, name).Set(value); };
+  set("NumberOfProcesses", this->Statistics->GetNumberOfProcesses());
+  set("NumberOfPasses", this->Statistics->GetNumberOfPasses());
+  set("CompletedFraction", this->Statistics->GetCompletedFraction());
+  set("TotalMilliseconds", this->Statistics->GetTotalMilliseconds());
+  set("GPUBytes", this->Statistics->GetGPUBytes());
+  set("CompressedBytes", this->Statistics->GetCompressedBytes());
+  set("BudgetBytes", this->Statistics->GetMemoryBudget());
+  this->InvokeEvent(vtkCommand::UpdateInformationEvent);
 }
 
 //------------------------------------------------------------------------------

@@ -6,15 +6,21 @@
  *
  * ParaView asks a representation for its information properties when its data change. Passes,
  * completed fraction and times change with every image instead, so this proxy asks after each image
- * of the view that shows it.
+ * of the view that shows it. It asks all processes that draw, wherever they are: ParaView's own way
+ * ends at the client, which in remote rendering draws nothing. What they say is in the information
+ * properties and, pass by pass, in GetStatistics(); observers hear of news by
+ * UpdateInformationEvent.
  */
 
 #ifndef vtkSMProgressiveIsosurfaceRepresentationProxy_h
 #define vtkSMProgressiveIsosurfaceRepresentationProxy_h
 
+#include "vtkNew.h"                          // for ivar
 #include "vtkProgIsoRepresentationsModule.h" // for export macro
 #include "vtkSMRepresentationProxy.h"
 #include "vtkWeakPointer.h" // for ivar
+
+class vtkPVIsosurfaceInformation;
 
 class VTKPROGISOREPRESENTATIONS_EXPORT vtkSMProgressiveIsosurfaceRepresentationProxy
   : public vtkSMRepresentationProxy
@@ -26,9 +32,14 @@ public:
 
   void ViewUpdated(vtkSMProxy* view) override;
 
+  /// What was last gathered. UpdatePropertyInformation() gathers anew.
+  vtkPVIsosurfaceInformation* GetStatistics();
+
 protected:
-  vtkSMProgressiveIsosurfaceRepresentationProxy() = default;
+  vtkSMProgressiveIsosurfaceRepresentationProxy();
   ~vtkSMProgressiveIsosurfaceRepresentationProxy() override;
+
+  void UpdatePropertyInformationInternal(vtkSMProperty* property) override;
 
 private:
   /// After an image of the view.
@@ -40,6 +51,7 @@ private:
 
   void StopObserving();
 
+  vtkNew<vtkPVIsosurfaceInformation> Statistics;
   vtkWeakPointer<vtkSMProxy> View;
   unsigned long ImageObserver = 0;
 

@@ -410,6 +410,13 @@ def test_cropping_keeps_blocks_as_they_are(bits):
     assert len(messages) == 1 and "piece" in messages[0]
 
 
+def test_a_stream_of_another_piece_is_refused():
+    compressed = progiso.compress(make_image(noise((9, 9, 9))), 8)
+    compressed.SetExtent(4, 12, 0, 8, 0, 4)
+    reader = vtkCompressedVolume()
+    assert not reader.Read(compressed) and "another piece" in reader.GetErrorMessage()
+
+
 def test_vti_with_appended_data(tmp_path):
     """Raw bytes behind the XML hold the same, in less."""
     compressed = progiso.compress(make_image(noise((30, 31, 32)), origin=(1, 2, 3), extent_start=(5, 6, 7)), 8)

@@ -12,7 +12,8 @@ from test_paraview import HERE, WARNINGS, build, under_x  # noqa: F401 (build is
 pytestmark = pytest.mark.paraview
 
 CASES = ["plain", "compressed", "decompressed", "cells", "cells-compressed"]
-CASES += ["file-compressed", "file-plain", "file-zfp", "pieces", "among-meshes"]
+CASES += ["file-compressed", "file-plain", "file-zfp", "pieces", "several", "translucent"]
+CASES += ["among-meshes", "translucent-among-meshes"]
 
 #: Open MPI in a container; processes that share few cores should each take one.
 MPI = {
@@ -57,6 +58,11 @@ def test_seams(shown, processes, case):
     assert np.ptp(one) > 100, "nothing to see"
     differing = np.abs(one - several).max(axis=2) > tolerances.PROCESSES_LEVELS
     assert differing.mean() <= tolerances.PROCESSES_PIXELS, f"{differing.sum()} pixels differ"
+
+
+def test_server(build, tmp_path):  # noqa: F811
+    """The server's processes draw; the client shows the same picture as without them, and all figures."""
+    under_x("pvpython", HERE / "paraview_scripts" / "remote.py", build, tmp_path, **MPI)
 
 
 def test_compressed_before_or_by_the_mapper(shown):

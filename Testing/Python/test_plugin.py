@@ -21,7 +21,19 @@ def run(name, build, folder):  # noqa: F811
 
 
 @pytest.mark.parametrize(
-    "name", ["show_plain", "show_compressed", "opaque", "zfp_files", "interactive", "errors", "cell_data", "contour"]
+    "name",
+    [
+        "show_plain",
+        "show_compressed",
+        "opaque",
+        "zfp_files",
+        "interactive",
+        "errors",
+        "cell_data",
+        "panel",
+        "trace",
+        "contour",
+    ],
 )
 def test_script(name, build, tmp_path):  # noqa: F811
     run(name, build, tmp_path)
@@ -40,6 +52,16 @@ def test_window(build, tmp_path):  # noqa: F811
     command = ["bash", SCRIPTS / "gui.sh", build, tmp_path, f":{next(displays)}"]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stdout + done.stderr
-    found = json.loads(done.stdout.splitlines()[-1])
-    assert found["completed"][-1] == 1.0 and found["completed"] == sorted(found["completed"])
+    seen = json.loads(done.stdout.splitlines()[-1])["seen"]
+    completed = [image["completed"] for image in seen]
+    assert completed[-1] == 1.0 and completed == sorted(completed) and completed[0] < 1.0
     assert (tmp_path / "gui_window.png").stat().st_size > 50_000
+    # the panel's widget follows, image by image
+    for image in seen:
+        assert abs(image["bar"] - image["completed"]) < 2e-3 and (image["text"] == "100 %") == (
+            image["completed"] == 1.0
+        )
+        assert image["rows"] == image["passes"] > 0 and image["image"].startswith(f"{image['passes']:.0f} pass")
+        assert image["memory"] == f"{image['held'] / 2**20:.1f} of {image['budget'] / 2**20:.1f} MiB"
+        assert 0 < image["held"] <= image["budget"] and all(time >= 0 for time in image["times"])
+    assert seen[-1]["rows"] > seen[0]["rows"] and sum(seen[-1]["times"]) > 0

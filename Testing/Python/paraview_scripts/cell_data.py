@@ -19,7 +19,7 @@ view = make_view()
 wavelet = make_wavelet(16)
 cells = simple.PointDatatoCellData(Input=wavelet)
 cells.UpdatePipeline()
-display = show_isosurface(cells, view, Isovalue=150.0)
+display = show_isosurface(cells, view, Isovalues=[150.0])
 assert list(display.IsosurfaceArray) == ["CELLS", "RTData"], list(display.IsosurfaceArray)
 look(view)
 shown = screenshot(view, "cells.png")
@@ -30,7 +30,7 @@ simple.Hide(cells, view)
 # compressed cell data: the same image
 compressed = simple.ZFPCompress(Input=cells, Rate=8)
 assert list(compressed.InputArray) == ["CELLS", "RTData"], list(compressed.InputArray)
-show_isosurface(compressed, view, Isovalue=150.0)
+show_isosurface(compressed, view, Isovalues=[150.0])
 check_same(shown, screenshot(view, "cells_compressed.png"))
 simple.Hide(compressed, view)
 
@@ -38,17 +38,17 @@ simple.Hide(compressed, view)
 second = simple.Calculator(Input=wavelet, ResultArrayName="negative", Function="-RTData")
 display = show_isosurface(second, view, IsosurfaceArray=["POINTS", "negative"])
 values = second.PointData["negative"].GetRange()
-display.Isovalue = -150.0
+display.Isovalues = [-150.0]
 chosen = screenshot(view, "second_array.png")
 assert covered(chosen) > 0.1
 display.IsosurfaceArray = ["POINTS", "RTData"]
-display.Isovalue = 150.0
+display.Isovalues = [150.0]
 check_same(chosen, screenshot(view, "first_array.png"), tolerance=1)
 simple.Hide(second, view)
 
 # a component of a vector array
 vectors = simple.Calculator(Input=wavelet, ResultArrayName="vectors", Function="iHat + RTData*jHat + 2*RTData*kHat")
-display = show_isosurface(vectors, view, IsosurfaceArray=["POINTS", "vectors"], IsosurfaceComponent=2, Isovalue=300.0)
+display = show_isosurface(vectors, view, IsosurfaceArray=["POINTS", "vectors"], IsosurfaceComponent=2, Isovalues=[300.0])
 check_same(chosen, screenshot(view, "component.png"), tolerance=1)
 
 finish(covered=covered(shown), range=values)

@@ -17,18 +17,23 @@ PROGRESSIVE_ISOSURFACE = "Progressive Isosurface"
 SIZE = [320, 240]
 
 
-def load_plugin():
-    """Load the plugin of the build directory; its filters are then found in `paraview.simple`."""
+def load_plugin(remote=False):
+    """Load the plugin of the build directory, and into the server; its filters are then found in `paraview.simple`."""
     found = sorted(BUILD.glob("lib*/**/plugins/ProgIso/ProgIso.so"))
     if len(found) != 1:
         raise FileNotFoundError(f"one ProgIso.so expected under {BUILD}, found {len(found)}")
-    simple.LoadPlugin(str(found[0]), remote=False, ns=vars(simple))
+    for there in (False, True)[: 1 + remote]:
+        simple.LoadPlugin(str(found[0]), remote=there, ns=vars(simple))
     OUTPUT.mkdir(parents=True, exist_ok=True)
 
 
 def make_view(size=SIZE):
     """A render view of fixed size, with a plain background, no decoration and no blending between neighbouring pixels."""
-    view = simple.CreateView("RenderView")
+    return undecorate(simple.CreateView("RenderView"), size)
+
+
+def undecorate(view, size=SIZE):
+    """Make a view what `make_view` promises."""
     view.ViewSize = list(size)
     view.OrientationAxesVisibility = 0
     view.UseFXAA = 0  # a pixel's colour is then its own
@@ -71,6 +76,8 @@ def information(display):
         "total_ms": "TotalMilliseconds",
         "bytes": "GPUBytes",
         "compressed": "CompressedBytes",
+        "budget": "BudgetBytes",
+        "processes": "NumberOfProcesses",
     }
     # vtkSMPropertyHelper reads them whatever Python makes of an information property
     return {key: servermanager.vtkSMPropertyHelper(display.SMProxy, name).GetAsDouble() for key, name in names.items()}
@@ -82,6 +89,8 @@ def check_converged(display):
     assert info["completed"] == 1.0, info
     assert info["passes"] >= 1 and info["total_ms"] > 0, info
     assert info["bytes"] > info["compressed"] >= 0, info
+    assert 0 < info["bytes"] - info["compressed"] <= info["budget"], info
+    assert info["processes"] >= 1, info
     return info
 
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # gui.sh BUILD OUTPUT [DISPLAY]: starts ParaView's own window on a virtual display with the plugin of BUILD, lets
 # gui_script.py show an isosurface there, and saves OUTPUT/gui_window.png, the whole window as a user sees it.
-# What gui_script.py reports is in OUTPUT/gui.json, what ParaView says in OUTPUT/gui.log. Wants Debian's python3-pil (ParaView's Python packages bring it along).
+# What gui_script.py reports is in OUTPUT/gui.json, what ParaView says in OUTPUT/gui.log. Wants Debian's python3-pil
+# (ParaView's Python packages bring it along) and python3-pyqt5. gui_refining.png is the window a moment after the third image.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 build=$(realpath "$1")
@@ -33,12 +34,18 @@ for _ in $(seq 50); do
   sleep 0.1
 done
 
-rm -f "$output/gui.log" "$output/gui.json" "$output/gui_window.png"
+rm -f "$output"/gui{.log,.json,_refining,_refining.png,_window.png}
+grab() {
+  /usr/bin/python3 -c 'import sys; from PIL import ImageGrab; ImageGrab.grab(xdisplay=sys.argv[1]).save(sys.argv[2])' "$display" "$1"
+}
 export PROGISO_GUI_BUILD=$build PROGISO_GUI_OUTPUT=$output
 paraview --script="$here/gui_script.py" >"$output/gui.log" 2>&1 &
 window=$!
 for _ in $(seq "$patience"); do
   sleep 1
+  if [ -e "$output/gui_refining" ] && [ ! -e "$output/gui_refining.png" ]; then
+    grab "$output/gui_refining.png"
+  fi
   [ -e "$output/gui.json" ] && break
   kill -0 "$window" 2>/dev/null || break
 done
@@ -47,11 +54,6 @@ if [ ! -e "$output/gui.json" ]; then
   tail -20 "$output/gui.log" >&2
   exit 1
 fi
-sleep 3 # for the panels to be painted
-/usr/bin/python3 - "$display" "$output/gui_window.png" <<'PYTHON'
-import sys
-from PIL import ImageGrab
-
-ImageGrab.grab(xdisplay=sys.argv[1]).save(sys.argv[2])
-PYTHON
+sleep 1 # for the panels to be painted
+grab "$output/gui_window.png"
 cat "$output/gui.json"

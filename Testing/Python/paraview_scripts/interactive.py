@@ -15,7 +15,7 @@ from common import (
 load_plugin()
 view = make_view([640, 480])
 wavelet = make_wavelet(48)
-display = show_isosurface(wavelet, view, Isovalue=150.0)
+display = show_isosurface(wavelet, view, Isovalues=[150.0])
 look(view)
 still = screenshot(view, "interactive_still.png")
 passes = information(display)["passes"]

@@ -6,7 +6,7 @@ from paraview import simple
 load_plugin()
 view = make_view()
 wavelet = make_wavelet()
-display = show_isosurface(wavelet, view, Isovalue=150.0, DiffuseColor=[1.0, 1.0, 1.0])
+display = show_isosurface(wavelet, view, Isovalues=[150.0], DiffuseColor=[1.0, 1.0, 1.0])
 look(view, azimuth=0, elevation=0)
 alone = screenshot(view, "opaque_alone.png")
 surface = abs(alone - alone[0, 0]).max(axis=2) > 8

@@ -1,7 +1,9 @@
 """Run by pvbatch on several processes: the same pictures whatever their number. Every process has a piece of the image, and draws that."""
 
+import math
+
 import numpy
-from common import BUILD, OUTPUT, finish, load_plugin, make_view, screenshot, show_isosurface
+from common import BUILD, OUTPUT, finish, load_plugin, make_view, middle, screenshot, show_isosurface
 from paraview import servermanager, simple
 
 assert BUILD.is_dir()
@@ -14,7 +16,7 @@ camera.SetViewUp(0, 1, 0)
 camera.SetClippingRange(1, 200)
 
 EXTENT = [-23, 25, -24, 24, -20, 29]  # no multiple of four anywhere, also not where it is cut
-look = {"Isovalue": 150.0, "DiffuseColor": [0.9, 0.85, 0.7]}
+look = {"Isovalues": [150.0], "DiffuseColor": [0.9, 0.85, 0.7]}
 
 
 def shoot(source, name, **properties):
@@ -29,6 +31,8 @@ display = shoot(wavelet, "plain", CompressionRate=4)
 processes = servermanager.ActiveConnection.GetNumberOfDataPartitions()
 
 compressed = simple.ZFPCompress(Input=wavelet, Rate=4)
+first = list(show_isosurface(compressed, view).Isovalues)
+assert math.isclose(first[0], middle(wavelet.PointData["RTData"].GetRange()), rel_tol=1e-6), "range of all pieces"
 shoot(compressed, "compressed")
 decompressed = simple.ZFPDecompress(Input=compressed)
 shoot(decompressed, "decompressed", CompressionRate=16)
@@ -74,10 +78,15 @@ image.GetPointData().SetScalars(array)
 """
 shoot(pieces, "pieces", CompressionRate=8)
 
+# several isosurfaces, and translucent ones, which composite in the order of the pieces
+shoot(wavelet, "several", Isovalues=[90.0, 210.0], CompressionRate=4)
+shoot(compressed, "translucent", Isovalues=[120.0, 200.0], Opacity=0.4)
+
 # among other geometry, which hides it and is hidden by it
 sphere = simple.Sphere(Radius=9, Center=[16, 8, 18], ThetaResolution=40, PhiResolution=40)
 shown = simple.Show(sphere, view)
 shown.DiffuseColor = [0.3, 0.5, 0.9]
-shoot(compressed, "among-meshes")
+shoot(compressed, "among-meshes", Opacity=1.0)
+shoot(compressed, "translucent-among-meshes", Opacity=0.4)
 
 finish(processes=int(numpy.asarray(processes)))

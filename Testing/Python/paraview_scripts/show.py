@@ -31,7 +31,7 @@ def shoot(name, display):
 
 def iso(display, isovalue):
     display.SetRepresentationType("Progressive Isosurface")
-    display.Isovalue = isovalue
+    display.Isovalues = [isovalue]
     display.DiffuseColor = [0.9, 0.8, 0.6]
     return display
 
@@ -52,7 +52,7 @@ shoot("paraview-compressed", packed)
 assert "Progressive Isosurface" in packed.GetProperty("Representation").Available
 
 # Another isovalue, moved and turned, with a mesh that cuts through.
-packed.Isovalue = 120
+packed.Isovalues = [120]
 packed.Position, packed.Orientation = [3, 2, 1], [0, 0, 30]
 sphere = Sphere(Radius=9, Center=[14, 6, 8], ThetaResolution=40, PhiResolution=40)
 mesh = Show(sphere, view)

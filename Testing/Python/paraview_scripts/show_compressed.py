@@ -30,18 +30,18 @@ assert servermanager.vtkSMPropertyHelper(compressed.SMProxy, "ActualRate").GetAs
 # the isovalue starts in the middle of the compressed volume's range
 display = show_isosurface(compressed, view)
 values = wavelet.PointData["RTData"].GetRange()
-check_close(display.Isovalue, middle(values), "isovalue at first")
+check_close(display.Isovalues[0], middle(values), "isovalue at first")
 
 look(view)
 display.DiffuseColor = [0.9, 0.85, 0.7]
-display.Isovalue = 150.0
+display.Isovalues = [150.0]
 shown = screenshot(view, "compressed.png")
 info = check_converged(display)
 assert 0.1 < covered(shown) < 0.9, covered(shown)
 
 # the plain image compressed to the same rate looks the same
 simple.Hide(compressed, view)
-plain = show_isosurface(wavelet, view, Isovalue=150.0, CompressionRate=12.0, DiffuseColor=[0.9, 0.85, 0.7])
+plain = show_isosurface(wavelet, view, Isovalues=[150.0], CompressionRate=12.0, DiffuseColor=[0.9, 0.85, 0.7])
 check_same(shown, screenshot(view, "compressed_plain.png"))
 simple.Hide(wavelet, view)
 

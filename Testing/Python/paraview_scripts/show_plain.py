@@ -25,12 +25,12 @@ look(view)
 
 # the isovalue starts in the middle of the range
 values = wavelet.PointData["RTData"].GetRange()
-check_close(display.Isovalue, middle(values), "isovalue at first")
+check_close(display.Isovalues[0], middle(values), "isovalue at first")
 assert list(display.IsosurfaceArray) == ["POINTS", "RTData"], list(display.IsosurfaceArray)
 
 # solid colour
 display.DiffuseColor = [1.0, 0.5, 0.25]
-display.Isovalue = 150.0
+display.Isovalues = [150.0]
 solid = screenshot(view, "plain_solid.png")
 info = check_converged(display)
 assert 0.1 < covered(solid) < 0.9, covered(solid)
@@ -46,9 +46,9 @@ assert information(display)["passes"] == info["passes"], information(display)
 simple.ColorBy(display, ("POINTS", "RTData"))
 display.RescaleTransferFunctionToDataRange(False, True)
 display.SetScalarBarVisibility(view, False)
-display.Isovalue = 90.0
+display.Isovalues = [90.0]
 low = screenshot(view, "plain_mapped_low.png")
-display.Isovalue = 240.0
+display.Isovalues = [240.0]
 high = screenshot(view, "plain_mapped_high.png")
 foreground = [image.reshape(-1, 3)[image.sum(axis=2).argmax()] for image in (low, high)]
 assert foreground[0][2] > foreground[0][0], f"low isovalue shows as {foreground[0]}"

@@ -17,7 +17,7 @@ from paraview import simple
 load_plugin()
 view = make_view()
 compressed = simple.ZFPCompress(Input=make_wavelet(), Rate=8)
-look_at = dict(Isovalue=150.0, DiffuseColor=[0.9, 0.85, 0.7])
+look_at = dict(Isovalues=[150.0], DiffuseColor=[0.9, 0.85, 0.7])
 show_isosurface(compressed, view, **look_at)
 look(view)
 direct = screenshot(view, "files_direct.png")

@@ -1,0 +1,18 @@
+# Qt widgets for ParaView's window, part of the plugin's library: their `interfaces` and `sources`.
+include_directories("${CMAKE_CURRENT_LIST_DIR}")
+paraview_plugin_add_property_widget(
+  KIND        GROUP_WIDGET
+  TYPE        "isosurface_statistics"
+  CLASS_NAME  pqIsosurfaceStatisticsWidget
+  INTERFACES  interfaces
+  SOURCES     sources)
+list(APPEND sources
+  "${CMAKE_CURRENT_LIST_DIR}/pqIsosurfaceStatisticsWidget.cxx"
+  "${CMAKE_CURRENT_LIST_DIR}/pqIsosurfaceStatisticsWidget.h")
+
+# what a distribution's ParaView links its window with, for files and charts; the widgets need none of it
+foreach (library IN ITEMS Boost::boost LibXml2::LibXml2 NetCDF::NetCDF Qt5::OpenGL hdf5::hdf5 hdf5::hdf5_hl)
+  if (NOT TARGET "${library}")
+    add_library("${library}" INTERFACE IMPORTED GLOBAL)
+  endif ()
+endforeach ()

@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pqIsosurfaceStatisticsWidget.h"
+
+#include "pqCoreUtilities.h"
+#include "vtkCommand.h"
+#include "vtkPVIsosurfaceInformation.h"
+#include "vtkSMProgressiveIsosurfaceRepresentationProxy.h"
+#include "vtkSMProperty.h"
+#include "vtkSMPropertyGroup.h"
+
+#include <QFormLayout>
+#include <QHeaderView>
+#include <QLabel>
+#include <QProgressBar>
+#include <QTableWidget>
+
+#include <cmath>
+
+namespace
+{
+constexpr int BAR_STEPS = 1000;
+constexpr int ROWS_SHOWN = 5;
+
+QString percent(double fraction)
+{
+  // an image that lacks one pixel is not complete
+  const double shown = fraction < 1.0 ? std::floor(1000.0 * fraction) / 10.0 : 100.0;
+  return QString::number(shown, 'f', fraction < 1.0 ? 1 : 0) + " %";
+}
+
+QString mebibytes(double bytes)
+{
+  return QString::number(bytes / (1 << 20), 'f', 1);
+}
+
+QTableWidgetItem* number(const QString& text)
+{
+  auto* item = new QTableWidgetItem(text);
+  item->setTextAlignment(Qt::AlignRight | Qt::AlignVCenter);
+  return item;
+}
+}
+
+//-----------------------------------------------------------------------------
+pqIsosurfaceStatisticsWidget::pqIsosurfaceStatisticsWidget(
+  vtkSMProxy* smproxy, vtkSMPropertyGroup* group, QWidget* parentWidget)
+  : Superclass(smproxy, group, parentWidget)
+  , Completed(new QProgressBar(this))
+  , Memory(new QProgressBar(this))
+  , Image(new QLabel(this))
+  , Passes(new QTableWidget(this))
+{
+  // the group is the panel's, its properties are those of the representation inside
+  vtkSMProperty* first = group->GetNumberOfProperties() > 0 ? group->GetProperty(0u) : nullptr;
+  this->Source = vtkSMProgressiveIsosurfaceRepresentationProxy::SafeDownCast(
+    first ? first->GetParent() : nullptr);
+
+  this->Completed->setObjectName("Completed");
+  this->Completed->setRange(0, BAR_STEPS);
+  this->Completed->setToolTip(tr("Part of the image that is complete"));
+  this->Memory->setObjectName("Memory");
+  this->Memory->setRange(0, BAR_STEPS);
+  this->Memory->setToolTip(
+    tr("Graphics memory beside the compressed volume, and the budget that bounds it"));
+  this->Image->setObjectName("Image");
+  this->makeTable();
+
+  auto* form = new QFormLayout(this);
+  form->setMargin(0);
+  form->addRow(tr("Completed"), this->Completed);
+  form->addRow(tr("Memory"), this->Memory);
+  form->addRow(tr("Image"), this->Image);
+  form->addRow(this->Passes);
+
+  if (this->Source)
+  {
+    pqCoreUtilities::connect(
+      this->Source, vtkCommand::UpdateInformationEvent, this, SLOT(showStatistics()));
+    this->showStatistics();
+  }
+}
+
+//-----------------------------------------------------------------------------
+pqIsosurfaceStatisticsWidget::~pqIsosurfaceStatisticsWidget() = default;
+
+//-----------------------------------------------------------------------------
+void pqIsosurfaceStatisticsWidget::makeTable()
+{
+  this->Passes->setObjectName("Passes");
+  this->Passes->setColumnCount(3);
+  this->Passes->setHorizontalHeaderLabels({ tr("Pass"), tr("Time (ms)"), tr("Completed") });
+  this->Passes->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
+  this->Passes->verticalHeader()->hide();
+  this->Passes->setEditTriggers(QAbstractItemView::NoEditTriggers);
+  this->Passes->setSelectionMode(QAbstractItemView::NoSelection);
+  this->Passes->setFocusPolicy(Qt::NoFocus);
+  const int row = this->Passes->verticalHeader()->defaultSectionSize();
+  this->Passes->setFixedHeight((ROWS_SHOWN + 1) * row);
+}
+
+//-----------------------------------------------------------------------------
+void pqIsosurfaceStatisticsWidget::showStatistics()
+{
+  if (!this->Source)
+  {
+    return;
+  }
+  vtkPVIsosurfaceInformation* statistics = this->Source->GetStatistics();
+  const double completed = statistics->GetCompletedFraction();
+  this->Completed->setValue(static_cast<int>(BAR_STEPS * completed));
+  this->Completed->setFormat(percent(completed));
+  const int passes = statistics->GetNumberOfPasses();
+  QString image = (passes == 1 ? tr("%1 pass, %2 ms") : tr("%1 passes, %2 ms"))
+                    .arg(passes)
+                    .arg(statistics->GetTotalMilliseconds(), 0, 'f', 1);
+  if (statistics->GetNumberOfProcesses() > 1)
+  {
+    image += tr(", %1 processes").arg(statistics->GetNumberOfProcesses());
+  }
+  this->Image->setText(image);
+  this->showMemory(statistics);
+  this->showPasses(statistics);
+}
+
+//-----------------------------------------------------------------------------
+void pqIsosurfaceStatisticsWidget::showMemory(vtkPVIsosurfaceInformation* statistics)
+{
+  const double held = statistics->GetGPUBytes() - statistics->GetCompressedBytes();
+  const double budget = statistics->GetMemoryBudget();
+  this->Memory->setValue(budget > 0.0 ? static_cast<int>(BAR_STEPS * held / budget) : 0);
+  this->Memory->setFormat(tr("%1 of %2 MiB").arg(mebibytes(held), mebibytes(budget)));
+}
+
+//-----------------------------------------------------------------------------
+void pqIsosurfaceStatisticsWidget::showPasses(vtkPVIsosurfaceInformation* statistics)
+{
+  const std::vector<double>& ends = statistics->GetPassMilliseconds();
+  const std::vector<double>& completed = statistics->GetPassCompleted();
+  const int passes = statistics->GetNumberOfPasses();
+  this->Passes->setRowCount(passes);
+  for (int pass = 0; pass < passes; ++pass)
+  {
+    const double taken = ends[pass] - (pass > 0 ? ends[pass - 1] : 0.0);
+    this->Passes->setItem(pass, 0, number(QString::number(pass + 1)));
+    this->Passes->setItem(pass, 1, number(QString::number(taken, 'f', 2)));
+    this->Passes->setItem(pass, 2, number(percent(completed[pass])));
+  }
+  this->Passes->scrollToBottom();
+}

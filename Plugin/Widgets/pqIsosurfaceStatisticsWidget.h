@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   pqIsosurfaceStatisticsWidget
+ * @brief   shows in ParaView's panel how a progressive isosurface refines
+ *
+ * The widget of the property group of a progressive isosurface's figures: how much of the image is
+ * complete, memory against the budget, passes, and the time that each pass took. It follows its
+ * vtkSMProgressiveIsosurfaceRepresentationProxy, which gathers the figures after every image, and
+ * changes nothing.
+ */
+
+#ifndef pqIsosurfaceStatisticsWidget_h
+#define pqIsosurfaceStatisticsWidget_h
+
+#include "pqPropertyGroupWidget.h"
+#include "vtkWeakPointer.h" // for ivar
+
+class QLabel;
+class QProgressBar;
+class QTableWidget;
+class vtkPVIsosurfaceInformation;
+class vtkSMProgressiveIsosurfaceRepresentationProxy;
+
+class pqIsosurfaceStatisticsWidget : public pqPropertyGroupWidget
+{
+  Q_OBJECT
+  typedef pqPropertyGroupWidget Superclass;
+
+public:
+  pqIsosurfaceStatisticsWidget(
+    vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* parent = nullptr);
+  ~pqIsosurfaceStatisticsWidget() override;
+
+private Q_SLOTS:
+  /// Show what the proxy has gathered.
+  void showStatistics();
+
+private:
+  void makeTable();
+  void showMemory(vtkPVIsosurfaceInformation* statistics);
+  void showPasses(vtkPVIsosurfaceInformation* statistics);
+
+  vtkWeakPointer<vtkSMProgressiveIsosurfaceRepresentationProxy> Source;
+  QProgressBar* Completed;
+  QProgressBar* Memory;
+  QLabel* Image;
+  QTableWidget* Passes;
+
+  Q_DISABLE_COPY(pqIsosurfaceStatisticsWidget)
+};
+
+#endif

@@ -1,0 +1,89 @@
+"""A client and a server of two processes: the server renders, the client shows the picture and the figures of all that draw."""
+
+import os
+import socket
+import subprocess
+
+from common import (
+    BUILD,
+    check_close,
+    check_converged,
+    check_same,
+    covered,
+    finish,
+    load_plugin,
+    look,
+    make_view,
+    make_wavelet,
+    screenshot,
+    show_isosurface,
+)
+from paraview import servermanager, simple
+
+assert BUILD.is_dir()
+PROCESSES = 2
+LOOK = {"Isovalues": [150.0], "DiffuseColor": [0.9, 0.85, 0.7]}
+
+
+def show_wavelet(name):
+    """The same scene wherever it is rendered: its picture, its figures, and what shows it."""
+    view = make_view()
+    wavelet = make_wavelet(60)
+    display = show_isosurface(wavelet, view, **LOOK)
+    look(view)
+    return screenshot(view, name), check_converged(display), view, wavelet, display
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("localhost", 0))
+        return probe.getsockname()[1]
+
+
+def start_server(port):
+    """Start the server's processes. MPI has this script for one that it started, which they must not inherit."""
+    environment = {k: v for k, v in os.environ.items() if "ALLOW_RUN" in k or not k.startswith(("OMPI_", "PMIX_"))}
+    command = ["mpiexec", "--oversubscribe", "-n", str(PROCESSES), "pvserver", f"--server-port={port}"]
+    return subprocess.Popen(command, env=environment)
+
+
+load_plugin()
+here, info_here, *_ = show_wavelet("remote_here.png")
+assert info_here["processes"] == 1, info_here
+assert covered(here) > 0.1
+
+port = free_port()
+server = start_server(port)
+try:
+    simple.Connect("localhost", port)  # tries for a minute
+    load_plugin(remote=True)
+    there, info, view, wavelet, display = show_wavelet("remote_there.png")
+    assert servermanager.ActiveConnection.GetNumberOfDataPartitions() == PROCESSES
+    check_same(here, there, tolerance=2)
+
+    # both processes draw, and each has its part of the volume
+    assert info["processes"] == PROCESSES, info
+    assert info["budget"] > 1.5 * info_here["budget"], (info, info_here)
+
+    # the figures follow the image without being asked for
+    display.MemoryBudget = 3
+    display.Isovalues = [120.0]
+    simple.Render(view)
+    figures = {
+        name: servermanager.vtkSMPropertyHelper(display.SMProxy, name).GetAsDouble()
+        for name in ("NumberOfPasses", "CompletedFraction", "BudgetBytes")
+    }
+    assert figures["NumberOfPasses"] > 1 and figures["CompletedFraction"] == 1.0, figures
+    check_close(figures["BudgetBytes"], PROCESSES * 3 * 2**20, "budget of two processes")
+
+    # a compressed volume of the server's
+    compressed = simple.ZFPCompress(Input=wavelet, Rate=display.CompressionRate)
+    simple.Hide(wavelet, view)
+    packed = show_isosurface(compressed, view, **LOOK)
+    check_same(there, screenshot(view, "remote_compressed.png"))
+    assert check_converged(packed)["processes"] == PROCESSES
+finally:
+    server.terminate()
+    server.wait()
+
+finish(here=info_here, there=info)
