@@ -303,6 +303,7 @@ vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::SelectDraw
   vtkDataSetAttributes* from = image->GetAttributes(this->DrawnArray.Association);
   vtkDataSetAttributes* to = selected->GetAttributes(this->DrawnArray.Association);
   to->AddArray(from->GetArray(this->DrawnArray.Name.c_str()));
+  to->AddArray(from->GetArray(this->FindOtherColorArray(image).c_str()));
   return selected;
 }
 
@@ -379,6 +380,34 @@ bool vtkProgressiveIsosurfaceRepresentation::IsColoredByDrawnArray()
 }
 
 //------------------------------------------------------------------------------
+// Of the arrays that could give the colours; empty where none beside the drawn one does.
+std::string vtkProgressiveIsosurfaceRepresentation::FindOtherColorArray(vtkImageData* image)
+{
+  vtkInformation* color = this->GetInputArrayInformation(0);
+  if (!image || !color || !color->Has(vtkDataObject::FIELD_ASSOCIATION()) ||
+    !color->Has(vtkDataObject::FIELD_NAME()) || !color->Get(vtkDataObject::FIELD_NAME()) ||
+    color->Get(vtkDataObject::FIELD_ASSOCIATION()) != this->DrawnArray.Association)
+  {
+    return "";
+  }
+  const std::string name = color->Get(vtkDataObject::FIELD_NAME());
+  vtkDataSetAttributes* arrays = image->GetAttributes(this->DrawnArray.Association);
+  const bool there = name != this->DrawnArray.Name && arrays && arrays->GetArray(name.c_str());
+  return there && !vtkCompressedVolume::IsCompressed(image) ? name : "";
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetInputArrayToProcess(
+  int index, int port, int connection, int association, const char* name)
+{
+  this->Superclass::SetInputArrayToProcess(index, port, connection, association, name);
+  if (NumberOfProcesses() > 1)
+  {
+    this->MarkModified(); // the pieces hold no other arrays than those that are seen
+  }
+}
+
+//------------------------------------------------------------------------------
 void vtkProgressiveIsosurfaceRepresentation::UpdateMapperParameters()
 {
   // Nothing here may touch a modified time without need: ParaView calls this before every image,
@@ -389,8 +418,21 @@ void vtkProgressiveIsosurfaceRepresentation::UpdateMapperParameters()
       ? VTK_SCALAR_MODE_USE_CELL_FIELD_DATA
       : VTK_SCALAR_MODE_USE_POINT_FIELD_DATA);
   this->UpdateLook();
+  this->UpdateColors();
   this->Actor->SetMapper(this->VolumeMapper);
   this->Actor->SetVisibility(this->CanDraw);
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::UpdateColors()
+{
+  vtkProgressiveIsosurfaceMapper* mapper = this->GetIsosurfaceMapper();
+  const std::string name = this->ColorMap
+    ? this->FindOtherColorArray(vtkImageData::SafeDownCast(this->Cache))
+    : std::string();
+  mapper->SetColorArrayName(name.empty() ? nullptr : name.c_str());
+  mapper->SetColorComponent(this->ColorMap ? std::max(this->ColorMap->GetVectorComponent(), 0) : 0);
+  mapper->SetColorLookupTable(name.empty() ? nullptr : this->ColorMap.Get());
 }
 
 //------------------------------------------------------------------------------

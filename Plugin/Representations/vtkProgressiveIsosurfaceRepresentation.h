@@ -63,8 +63,14 @@ public:
   /// Opacity of the surface, 0 … 1. A colour map that maps opacities has a say too.
   void SetOpacity(double opacity);
 
-  /// Colour map, used when the representation is coloured by the isosurface array.
+  /// Colour map, used when the representation is coloured by the isosurface array, or by another
+  /// one of a plain image that has the same association.
   void SetColor(vtkColorTransferFunction* colorMap);
+
+  using Superclass::SetInputArrayToProcess;
+  /// The array to colour by.
+  void SetInputArrayToProcess(
+    int index, int port, int connection, int association, const char* name) override;
 
   ///@{
   /**
@@ -123,6 +129,12 @@ private:
 
   /// True when the representation is coloured by the array that is drawn.
   bool IsColoredByDrawnArray();
+
+  ///@{
+  /// The array that gives the colours in place of the one that is drawn.
+  std::string FindOtherColorArray(vtkImageData* image);
+  void UpdateColors();
+  ///@}
 
   /// Sets the property's colours, and its opacities: a function with one node an isovalue.
   void UpdateLook();

@@ -33,6 +33,7 @@ def run(name, build, folder):  # noqa: F811
         "panel",
         "trace",
         "contour",
+        "color_by",
     ],
 )
 def test_script(name, build, tmp_path):  # noqa: F811
