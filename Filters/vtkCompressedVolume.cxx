@@ -6,9 +6,11 @@
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
 #include "vtkIntArray.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 #include "vtkStructuredData.h"
 #include "vtkTypeInt64Array.h"
@@ -435,6 +437,14 @@ void vtkCompressedVolume::Remove(vtkDataObject* object)
   {
     object->GetFieldData()->RemoveArray(name);
   }
+}
+
+//------------------------------------------------------------------------------
+bool vtkCompressedVolume::IsEmptyPiece(vtkInformation* input)
+{
+  vtkImageData* image = vtkImageData::GetData(input);
+  return image && image->GetNumberOfPoints() == 0 &&
+    input->Get(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
 }
 
 //------------------------------------------------------------------------------

@@ -49,6 +49,7 @@
 
 class vtkDataObject;
 class vtkImageData;
+class vtkInformation;
 class vtkUnsignedCharArray;
 
 class VTKPROGISOFILTERS_EXPORT vtkCompressedVolume : public vtkObject
@@ -90,6 +91,12 @@ public:
    */
   static vtkTypeInt64 NumberOfBlocksFor(const int dims[3]);
   static vtkTypeInt64 StreamBytesFor(const int dims[3], int blockBits);
+
+  /**
+   * Whether an algorithm's input is nothing because other processes have all pieces of an image:
+   * that is no error.
+   */
+  static bool IsEmptyPiece(vtkInformation* input);
 
   /**
    * The extent of an image without its ghost cells, as vtkGhostType marks them; they must be layers

@@ -213,10 +213,9 @@ int vtkImageZFPCompress::RequestData(
   vtkCompressedVolume::Remove(output);
 
   vtkInformation* in = inputVector[0]->GetInformationObject(0);
-  if (input->GetNumberOfPoints() == 0 &&
-    in->Get(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
+  if (vtkCompressedVolume::IsEmptyPiece(in))
   {
-    return 1; // this process has no piece
+    return 1;
   }
   Part part;
   vtkDataArray* array = this->FindArray(inputVector, input, part.Association);

@@ -55,6 +55,10 @@ int vtkImageZFPDecompress::RequestData(
   output->GetFieldData()->PassData(input->GetFieldData());
   vtkCompressedVolume::Remove(output);
 
+  if (vtkCompressedVolume::IsEmptyPiece(inputVector[0]->GetInformationObject(0)))
+  {
+    return 1;
+  }
   vtkNew<vtkCompressedVolume> volume;
   if (!volume->Read(input))
   {

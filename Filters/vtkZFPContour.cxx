@@ -3,9 +3,11 @@
 #include "vtkZFPContour.h"
 
 #include "vtkCellArray.h"
+#include "vtkCellData.h"
 #include "vtkCompressedVolume.h"
 #include "vtkErrorCode.h"
 #include "vtkFloatArray.h"
+#include "vtkIdList.h"
 #include "vtkImageData.h"
 #include "vtkImageTransform.h"
 #include "vtkInformation.h"
@@ -39,22 +41,52 @@ constexpr vtkIdType BricksPerBatch = 16;
 constexpr double ExtractedFraction = 0.95;
 
 //------------------------------------------------------------------------------
-// The image whose points are the samples: for cell data that of the cells' centres.
-vtkSmartPointer<vtkImageData> SampleGeometry(vtkImageData* image, int association)
+// The image whose points are the stream's samples: for cell data that of the cells' centres.
+vtkSmartPointer<vtkImageData> SampleGeometry(vtkImageData* image, vtkCompressedVolume* volume)
 {
   auto geometry = vtkSmartPointer<vtkImageData>::New();
   geometry->CopyStructure(image);
-  if (association == vtkCompressedVolume::CellData)
+  geometry->SetExtent(volume->GetExtent());
+  if (volume->GetAssociation() == vtkCompressedVolume::CellData)
   {
     int extent[6];
     double origin[3];
-    image->GetExtent(extent);
+    volume->GetExtent(extent);
     image->TransformContinuousIndexToPhysicalPoint(0.5, 0.5, 0.5, origin);
     geometry->SetExtent(
       extent[0], extent[1] - 1, extent[2], extent[3] - 1, extent[4], extent[5] - 1);
     geometry->SetOrigin(origin);
   }
   return geometry;
+}
+
+//------------------------------------------------------------------------------
+// Marks those triangles, in the samples' index space, that lie beyond the image's extent: a piece
+// of a volume has samples around it, and the triangles there are another piece's.
+void MarkGhosts(vtkPolyData* surface, const int extent[6], const int samples[6])
+{
+  vtkCellArray* triangles = surface->GetPolys();
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  ghosts->SetNumberOfValues(triangles->GetNumberOfCells());
+  vtkNew<vtkIdList> corners;
+  for (vtkIdType i = 0; i < triangles->GetNumberOfCells(); ++i)
+  {
+    triangles->GetCellAtId(i, corners);
+    bool own = true;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      double middle = 0.0; // it lies in one cell, hence its middle too
+      for (const vtkIdType corner : *corners)
+      {
+        middle += surface->GetPoint(corner)[axis] / 3.0;
+      }
+      const int end = extent[2 * axis + 1];
+      own = own && middle >= extent[2 * axis] && (middle < end || end == samples[2 * axis + 1]);
+    }
+    ghosts->SetValue(i, own ? 0 : vtkDataSetAttributes::DUPLICATECELL);
+  }
+  surface->GetCellData()->AddArray(ghosts);
 }
 
 //------------------------------------------------------------------------------
@@ -400,6 +432,10 @@ int vtkZFPContour::RequestData(
   this->NumberOfBricks = this->NumberOfDecodedBricks = 0;
   this->PeakSampleBytes = 0;
   vtkCompressedVolume::Remove(output); // the executive has passed all field data
+  if (vtkCompressedVolume::IsEmptyPiece(inputVector[0]->GetInformationObject(0)))
+  {
+    return 1;
+  }
   vtkNew<vtkCompressedVolume> volume;
   if (!volume->Read(input))
   {
@@ -410,7 +446,7 @@ int vtkZFPContour::RequestData(
   {
     return 1;
   }
-  const auto geometry = SampleGeometry(input, volume->GetAssociation());
+  const auto geometry = SampleGeometry(input, volume);
   const int* const extent = geometry->GetExtent();
   const int extentStart[3] = { extent[0], extent[2], extent[4] };
   Work work(this, volume, extentStart);
@@ -423,6 +459,10 @@ int vtkZFPContour::RequestData(
       if (work.Extract())
       {
         work.Join(output, volume->GetArrayName());
+        if (!volume->Covers(input))
+        {
+          MarkGhosts(output, input->GetExtent(), extent);
+        }
         vtkImageTransform::TransformPointSet(geometry, output);
         this->UpdateProgress(1.0);
       }

@@ -23,6 +23,9 @@
  * compressed stream is passed on. Points are float32, as vtkFlyingEdges3D's are. There is no
  * array to choose: a compressed volume holds one.
  *
+ * Of a piece of a volume, whose stream covers samples around it, the triangles beyond the piece are
+ * there too, marked as ghost cells (vtkGhostType): they are those of other pieces.
+ *
  * Bricks are contoured in parallel by vtkSMPTools. Progress events are sent, and an abort is
  * noticed (the output is then empty), by the thread that updates the filter.
  *

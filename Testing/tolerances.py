@@ -55,6 +55,9 @@ PROCESSES_LEVELS = 2
 #: ... but for this part of them, where a ray grazes the surface at a seam.
 PROCESSES_PIXELS = 5e-5
 
+#: The area of the triangles of all processes against that of one's, relative: coordinates are float32.
+PROCESSES_AREA = 1e-6
+
 # --- memory ----------------------------------------------------------------------------------------------------------------------
 
 #: GPU memory beside the compressed payload and the cache, as the issue bounds it.

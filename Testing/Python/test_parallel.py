@@ -12,7 +12,7 @@ from test_paraview import HERE, WARNINGS, build, under_x  # noqa: F401 (build is
 pytestmark = pytest.mark.paraview
 
 CASES = ["plain", "compressed", "decompressed", "cells", "cells-compressed"]
-CASES += ["file-compressed", "file-plain", "file-zfp", "pieces", "several", "translucent"]
+CASES += ["file-compressed", "file-plain", "file-zfp", "pieces", "several", "translucent", "contour"]
 CASES += ["among-meshes", "translucent-among-meshes"]
 
 #: Open MPI in a container; processes that share few cores should each take one.
@@ -37,7 +37,7 @@ def shown(build, tmp_path_factory):  # noqa: F811
     progiso.save(image, folder / "file-plain.vti")
     progiso.save(compressed, folder / "file-compressed.vti")
     progiso.save(compressed, folder / "file.zfp")
-    found = {}
+    found, areas = {}, []
     for processes in (1, 2, 4):
         output = mpiexec(
             processes, "pvbatch", HERE / "paraview_scripts" / "parallel.py", build, folder / str(processes)
@@ -45,9 +45,11 @@ def shown(build, tmp_path_factory):  # noqa: F811
         assert not any(word in output for word in WARNINGS), output[-6000:]
         (report,) = [json.loads(line) for line in output.splitlines() if line.startswith("{")]
         assert report["processes"] == processes
+        areas.append(report["area"])
         found[processes] = {
             case: pictures.read_png(folder / str(processes) / f"{case}.png").astype(int) for case in CASES
         }
+    assert np.allclose(areas, areas[0], rtol=tolerances.PROCESSES_AREA, atol=0), areas
     return found
 
 

@@ -48,6 +48,7 @@ for name in ("file-compressed", "file-plain"):
 zfp = simple.OpenDataFile(str(OUTPUT.parent / "file.zfp"))
 zfp.DataOrigin = [-22, -20, -18]
 shoot(zfp, "file-zfp")
+simple.ZFPDecompress(Input=zfp).UpdatePipeline()  # nothing to do for the others
 
 # a source that makes pieces, but no ghost cells: they are exchanged
 pieces = simple.ProgrammableSource(OutputDataSetType="vtkImageData")
@@ -82,6 +83,17 @@ shoot(pieces, "pieces", CompressionRate=8)
 shoot(wavelet, "several", Isovalues=[90.0, 210.0], CompressionRate=4)
 shoot(compressed, "translucent", Isovalues=[120.0, 200.0], Opacity=0.4)
 
+# triangles of each piece; those beyond it are marked as another's
+contour = simple.ZFPContour(Input=compressed, Isosurfaces=[150.0])
+shown = simple.Show(contour, view)
+shown.SetRepresentationType("Surface")
+simple.ColorBy(shown, None)
+screenshot(view, "contour.png")
+areas = simple.IntegrateVariables(Input=contour)
+areas.UpdatePipeline()
+area = areas.CellData["Area"].GetRange()[0]
+simple.Hide(contour, view)
+
 # among other geometry, which hides it and is hidden by it
 sphere = simple.Sphere(Radius=9, Center=[16, 8, 18], ThetaResolution=40, PhiResolution=40)
 shown = simple.Show(sphere, view)
@@ -89,4 +101,4 @@ shown.DiffuseColor = [0.3, 0.5, 0.9]
 shoot(compressed, "among-meshes", Opacity=1.0)
 shoot(compressed, "translucent-among-meshes", Opacity=0.4)
 
-finish(processes=int(numpy.asarray(processes)))
+finish(processes=int(numpy.asarray(processes)), area=area)
