@@ -52,6 +52,8 @@ namespace
 {
 using Clock = std::chrono::steady_clock;
 
+constexpr int AloneAgain = 3; // renders of one view after which no other one is expected
+
 double MillisecondsSince(Clock::time_point start)
 {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -169,7 +171,7 @@ public:
   vtkNew<vtkMatrix4x4> EyeToWorld;        // of Scene
   std::pair<int, vtkMTimeType> Obstacles; // of Scene: how many props, and when they last changed
   std::pair<vtkRenderer*, int> View;      // renderer and eye of the last render
-  int RendersOfView = 0;                  // since another view was rendered
+  int RendersOfView = AloneAgain;         // since another view was rendered
   bool CacheToEmpty = false;              // at the next render, when the context is current
   double TotalMilliseconds = 0.0;
 
@@ -502,7 +504,8 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(
   scene.Lighting[2] = obstacles.first > 0 ? 1 : 0;
   const bool samePalette = this->UpdatePalette(volume->GetProperty());
   const std::pair<vtkRenderer*, int> view = { renderer, camera->GetLeftEye() };
-  this->RendersOfView = view == this->View ? this->RendersOfView + 1 : 0;
+  const bool otherView = this->View.first && view != this->View;
+  this->RendersOfView = otherView ? 0 : this->RendersOfView + 1;
   const bool sameHits = this->HaveScene && view == this->View && SameHits(this->Scene, scene) &&
     (!translucent || (SameLook(this->Scene, scene) && samePalette && obstacles == this->Obstacles));
   this->View = view;
@@ -542,9 +545,8 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(
 // eyes, take turns each of them begins anew: none would ever be complete.
 bool vtkProgressiveIsosurfaceMapper::Internals::MayRefineLater(vtkOpenGLRenderWindow* window) const
 {
-  const int alone = 3;
   vtkRenderWindowInteractor* interactor = window->GetInteractor();
-  return this->RendersOfView >= alone && interactor && interactor->GetInitialized() &&
+  return this->RendersOfView >= AloneAgain && interactor && interactor->GetInitialized() &&
     !window->GetOffScreenRendering() && window->GetSwapBuffers();
 }
 

@@ -15,6 +15,7 @@ plain = screenshot(view, "color_by_isosurface_array.png")
 simple.ColorBy(display, ("POINTS", "right"))
 display.SetScalarBarVisibility(view, False)
 colours = simple.GetColorTransferFunction("right")
+colours.ColorSpace = "RGB"
 colours.RGBPoints = [-24.0, 0.0, 0.0, 1.0, 24.0, 1.0, 0.0, 0.0]
 coloured = screenshot(view, "color_by_right.png")
 assert covered(coloured) == covered(plain) > 0.1, "the same surface"
