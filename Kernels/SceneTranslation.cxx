@@ -170,7 +170,9 @@ void TranslateLight(vtkLight* light, vtkMatrix4x4* worldToEye, SceneLight& place
   {
     place.Place[axis] = static_cast<float>(position[axis]);
     place.Axis[axis] = static_cast<float>(way[axis]);
-    place.Color[axis] = static_cast<float>(color[axis] * light->GetIntensity());
+    place.Color[axis] = static_cast<float>(light->GetDiffuseColor()[axis] * light->GetIntensity());
+    place.Highlight[axis] =
+      static_cast<float>(light->GetSpecularColor()[axis] * light->GetIntensity());
     place.Fading[axis] = static_cast<float>(light->GetAttenuationValues()[axis]);
   }
   const bool spot = positional && light->GetConeAngle() < 90.0;
