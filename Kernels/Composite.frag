@@ -15,11 +15,9 @@
 #endif
 
 layout(location = 0) out vec4 fragmentColor;
-#ifdef HAS_NORMALS
 // where VTK's passes ask for them, such as ambient occlusion: in view coordinates
 layout(location = 1) out vec4 fragmentPosition;
 layout(location = 2) out vec4 fragmentNormal;
-#endif
 
 // A hit shows as soon as it is lit.
 #ifdef TRANSLUCENT
@@ -51,13 +49,17 @@ void main()
   gl_FragDepth = WindowDepth(t);
 #ifdef TRANSLUCENT
   fragmentColor = BlendedLayers(pixel);
+  fragmentPosition = vec4(0.0); // blended like the colour: those of what lies behind stay
+  fragmentNormal = vec4(0.0);
 #else
-  vec3 normal = vec3(0.0);
+  vec3 direction = EyeRayDirection(pixel);
 #ifdef HAS_NORMALS
-  normal = UnpackNormal(normals[pixel]);
-  fragmentPosition = vec4(EyeRayOrigin(pixel) + t * EyeRayDirection(pixel), 1.0);
-  fragmentNormal = vec4(dot(normal, EyeRayDirection(pixel)) > 0.0 ? -normal : normal, 1.0);
+  vec3 normal = UnpackNormal(normals[pixel]);
+#else
+  vec3 normal = -normalize(direction); // the best guess of an unlit surface's
 #endif
+  fragmentPosition = vec4(EyeRayOrigin(pixel) + t * direction, 1.0);
+  fragmentNormal = vec4(dot(normal, direction) > 0.0 ? -normal : normal, 1.0);
   fragmentColor = vec4(Shade(pixel, t, normal, HitOf(pixel).Surface), 1.0);
 #endif
 }

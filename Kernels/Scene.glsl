@@ -13,9 +13,10 @@
 struct Light
 {
   vec4 Place; // view coordinates: position (w = 1) or direction towards the light (w = 0)
-  vec4 Color; // colour times intensity; w: the exponent of a spot light
+  vec4 Color; // diffuse colour times intensity; w: the exponent of a spot light
   vec4 Axis;  // of a spot light, in view coordinates; w: cosine of its cone's angle, or -2 where it has none
   vec4 Fading; // with distance: constant, linear, quadratic; w unused
+  vec4 Highlight; // specular colour times intensity; w unused
 };
 
 layout(std140, binding = 0) uniform Scene

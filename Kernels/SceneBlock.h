@@ -12,6 +12,7 @@ struct SceneLight
   float Color[4];
   float Axis[4];
   float Fading[4];
+  float Highlight[4];
 };
 
 struct SceneBlock
@@ -49,7 +50,7 @@ struct SceneBlock
   SceneLight Lights[MaximumLights] = {};
 };
 static_assert(
-  sizeof(SceneBlock) == (13 + 16 + 2) * 32 + (9 + 16) * 16 + 64 + (3 + 16) * 16 + 16 * 64,
+  sizeof(SceneBlock) == (13 + 16 + 2) * 32 + (9 + 16) * 16 + 64 + (3 + 16) * 16 + 16 * 80,
   "std140 layout of Scene.glsl");
 
 #endif

@@ -36,12 +36,10 @@ struct EyeRays
   double Direction[3][3] = {};
 };
 
-// The point on the eye-space plane at which normalised device coordinates (x, y) lie: on z = -1 in
-// perspective, on z = 0 in parallel projection.
-void Unproject(vtkMatrix4x4* projection, bool perspective, double x, double y, double eye[2])
+// The point of an eye-space plane at which normalised device coordinates (x, y) lie.
+void Unproject(vtkMatrix4x4* projection, double z, double x, double y, double eye[2])
 {
   const vtkMatrix4x4& p = *projection;
-  const double z = perspective ? -1.0 : 0.0;
   const double w = p.GetElement(3, 2) * z + p.GetElement(3, 3);
   const double rx = x * w - p.GetElement(0, 2) * z - p.GetElement(0, 3);
   const double ry = y * w - p.GetElement(1, 2) * z - p.GetElement(1, 3);
@@ -52,20 +50,27 @@ void Unproject(vtkMatrix4x4* projection, bool perspective, double x, double y, d
   eye[1] = (a * ry - c * rx) / determinant;
 }
 
+// Rays need not meet in the eye: those of a stereo view are sheared.
 EyeRays MakeEyeRays(vtkMatrix4x4* projection, int width, int height)
 {
-  const bool perspective = projection->GetElement(3, 2) != 0.0;
-  double corner[2], right[2], top[2];
-  Unproject(projection, perspective, -1.0, -1.0, corner);
-  Unproject(projection, perspective, 1.0, -1.0, right);
-  Unproject(projection, perspective, -1.0, 1.0, top);
+  const double corners[3][2] = { { -1.0, -1.0 }, { 1.0, -1.0 }, { -1.0, 1.0 } };
+  double start[3][2], way[3][2];
+  for (int i = 0; i < 3; ++i)
+  {
+    Unproject(projection, 0.0, corners[i][0], corners[i][1], start[i]);
+    Unproject(projection, -1.0, corners[i][0], corners[i][1], way[i]);
+    way[i][0] -= start[i][0];
+    way[i][1] -= start[i][1];
+  }
   EyeRays rays;
-  auto& plane = perspective ? rays.Direction : rays.Origin;
   for (int axis = 0; axis < 2; ++axis)
   {
-    plane[0][axis] = corner[axis];
-    plane[1][axis] = (right[axis] - corner[axis]) / width;
-    plane[2][axis] = (top[axis] - corner[axis]) / height;
+    rays.Origin[0][axis] = start[0][axis];
+    rays.Origin[1][axis] = (start[1][axis] - start[0][axis]) / width;
+    rays.Origin[2][axis] = (start[2][axis] - start[0][axis]) / height;
+    rays.Direction[0][axis] = way[0][axis];
+    rays.Direction[1][axis] = (way[1][axis] - way[0][axis]) / width;
+    rays.Direction[2][axis] = (way[2][axis] - way[0][axis]) / height;
   }
   rays.Direction[0][2] = -1.0;
   return rays;
@@ -161,12 +166,13 @@ void TranslateLight(vtkLight* light, vtkMatrix4x4* worldToEye, SceneLight& place
   {
     vtkMath::Normalize(position);
   }
-  const double* color = light->GetDiffuseColor();
   for (int axis = 0; axis < 3; ++axis)
   {
     place.Place[axis] = static_cast<float>(position[axis]);
     place.Axis[axis] = static_cast<float>(way[axis]);
-    place.Color[axis] = static_cast<float>(color[axis] * light->GetIntensity());
+    place.Color[axis] = static_cast<float>(light->GetDiffuseColor()[axis] * light->GetIntensity());
+    place.Highlight[axis] =
+      static_cast<float>(light->GetSpecularColor()[axis] * light->GetIntensity());
     place.Fading[axis] = static_cast<float>(light->GetAttenuationValues()[axis]);
   }
   const bool spot = positional && light->GetConeAngle() < 90.0;

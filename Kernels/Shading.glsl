@@ -47,14 +47,15 @@ vec3 Illuminate(vec3 position, vec3 normal, vec3 toViewer, vec3 surfaceColor)
   for (int i = 0; i < scene.Lighting.x; ++i)
   {
     vec3 toLight;
-    vec3 light = scene.Lights[i].Color.rgb * Attenuation(scene.Lights[i], position, toLight);
+    float attenuation = Attenuation(scene.Lights[i], position, toLight);
     vec3 facing = scene.Lighting.w != 0 && dot(normal, toLight) > 0.0 ? normal : -normal;
     float cosine = dot(facing, toLight);
     if (cosine > 0.0)
     {
       float highlight = max(dot(reflect(-toLight, facing), toViewer), 0.0);
-      color += light * scene.Material.y * cosine * surfaceColor;
-      color += light * scene.Material.z * pow(highlight, scene.Material.w);
+      vec3 diffuse = scene.Material.y * cosine * scene.Lights[i].Color.rgb * surfaceColor;
+      vec3 specular = scene.Material.z * pow(highlight, scene.Material.w) * scene.Lights[i].Highlight.rgb;
+      color += attenuation * (diffuse + specular);
     }
   }
   return clamp(color, 0.0, 1.0);

@@ -21,7 +21,21 @@ int vtkIsosurfaceVolume::RenderOpaqueGeometry(vtkViewport* viewport)
 
 int vtkIsosurfaceVolume::RenderVolumetricGeometry(vtkViewport* viewport)
 {
-  return vtkProgressiveIsosurfaceMapper::IsTranslucent(this->GetProperty())
-    ? this->Superclass::RenderVolumetricGeometry(viewport)
-    : 0;
+  if (!vtkProgressiveIsosurfaceMapper::IsTranslucent(this->GetProperty()))
+  {
+    return 0;
+  }
+  if (vtkProgressiveIsosurfaceMapper::IsPeeled(this))
+  {
+    this->DrawnWithOverlays = true;
+    return 0;
+  }
+  return this->Superclass::RenderVolumetricGeometry(viewport);
+}
+
+int vtkIsosurfaceVolume::RenderOverlay(vtkViewport* viewport)
+{
+  const bool draws = this->DrawnWithOverlays;
+  this->DrawnWithOverlays = false;
+  return draws ? this->Superclass::RenderVolumetricGeometry(viewport) : 0;
 }

@@ -9,6 +9,9 @@
  * mapper in the opaque pass, or with the volumes where its property makes one of the isosurfaces
  * translucent, and is otherwise a vtkVolume.
  *
+ * A translucent isosurface is drawn over translucent geometry, also where the renderer peels depths
+ * of volumes (vtkRenderer::UseDepthPeelingForVolumes): its layers are not parted by such geometry.
+ *
  * @sa vtkProgressiveIsosurfaceMapper
  */
 #ifndef vtkIsosurfaceVolume_h
@@ -26,10 +29,12 @@ public:
 
   ///@{
   /**
-   * One of them draws the mapper. Return whether anything was drawn.
+   * One of them draws the mapper; the last where depths of volumes are peeled, after that. Return
+   * whether anything was drawn.
    */
   int RenderOpaqueGeometry(vtkViewport* viewport) override;
   int RenderVolumetricGeometry(vtkViewport* viewport) override;
+  int RenderOverlay(vtkViewport* viewport) override;
   ///@}
 
 protected:
@@ -37,6 +42,8 @@ protected:
   ~vtkIsosurfaceVolume() override = default;
 
 private:
+  bool DrawnWithOverlays = false; // the next time
+
   vtkIsosurfaceVolume(const vtkIsosurfaceVolume&) = delete;
   void operator=(const vtkIsosurfaceVolume&) = delete;
 };

@@ -18,11 +18,13 @@
 #include "vtkImageData.h"
 #include "vtkImageZFPCompress.h"
 #include "vtkInformation.h"
+#include "vtkInformationObjectBaseVectorKey.h"
 #include "vtkLight.h"
 #include "vtkLightCollection.h"
 #include "vtkMath.h"
 #include "vtkMatrix4x4.h"
 #include "vtkObjectFactory.h"
+#include "vtkOpenGLRenderPass.h"
 #include "vtkOpenGLRenderWindow.h"
 #include "vtkOpenGLShaderCache.h"
 #include "vtkOpenGLState.h"
@@ -841,6 +843,12 @@ void vtkProgressiveIsosurfaceMapper::Render(vtkRenderer* renderer, vtkVolume* vo
     vtkErrorMacro("needs an OpenGL render window");
     return;
   }
+  if (IsPeeled(volume))
+  {
+    vtkErrorMacro("cannot be peeled with other volumes: switch vtkRenderer's "
+                  "UseDepthPeelingForVolumes off, or use a vtkIsosurfaceVolume");
+    return;
+  }
   vtkHardwareSelector* selector = renderer->GetSelector();
   if (!this->Impl->CheckLimits(renderer, volume) || !this->Impl->UpdateVolume())
   {
@@ -895,6 +903,20 @@ bool vtkProgressiveIsosurfaceMapper::IsTranslucent(vtkVolumeProperty* property)
   {
     const double opacity = property->GetScalarOpacity()->GetValue(values->GetValue(i));
     if (opacity > 0.0 && opacity < 1.0)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool vtkProgressiveIsosurfaceMapper::IsPeeled(vtkVolume* volume)
+{
+  vtkInformation* keys = volume->GetPropertyKeys();
+  vtkInformationObjectBaseVectorKey* key = vtkOpenGLRenderPass::RenderPasses();
+  for (int i = 0; keys && i < keys->Length(key); ++i)
+  {
+    if (key->Get(keys, i)->IsA("vtkDualDepthPeelingPass"))
     {
       return true;
     }

@@ -212,6 +212,11 @@ public:
   static bool IsTranslucent(vtkVolumeProperty* property);
 
   /**
+   * Is a volume being rendered by a vtkDualDepthPeelingPass, layer by layer? The mapper cannot be.
+   */
+  static bool IsPeeled(vtkVolume* volume);
+
+  /**
    * For measurements: forget all decoded blocks, so that the next image begins anew and decodes
    * whatever it needs.
    */

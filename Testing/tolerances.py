@@ -58,6 +58,23 @@ PROCESSES_PIXELS = 5e-5
 #: The area of the triangles of all processes against that of one's, relative: coordinates are float32.
 PROCESSES_AREA = 1e-6
 
+#: Our picture against that of VTK's mapper, of the same samples: part of the pixels that may differ by more than `VTK_LEVELS` grey
+#: levels in some channel. Its hits are late by up to a twentieth of a voxel (stages.STEP), and it misses what is thinner: silhouettes and
+#: the edges of cuts move by a pixel, those of every one of several translucent surfaces. Triangles move them as much.
+VTK_PIXELS = 0.02
+VTK_LEVELS = 10
+
+#: Mean difference over the whole picture, in grey levels: one pixel in a hundred from surface to background is as much. Within a surface
+#: colours, opacities and light are the same but for roundings.
+VTK_MEAN = 1.3
+
+#: A picture of layers against the caster's, blended in double precision, in grey levels: the layers are kept in 16 bits a channel.
+LAYERS_LEVELS = 2
+
+#: Part of the pixels where that may be off: a ray that grazes a surface has a layer, or two, more or less. On white noise a cell in
+#: two holds such a tangent.
+LAYERS_PIXELS = 1e-3
+
 # --- memory ----------------------------------------------------------------------------------------------------------------------
 
 #: GPU memory beside the compressed payload and the cache, as the issue bounds it.

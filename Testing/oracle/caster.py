@@ -167,6 +167,55 @@ def cast_rays(volume, isovalue, origins, directions, slack=Slack(), begin=0.0, e
     return Cast(hits[1], hits[0], hits[2], np.linalg.norm(steps, axis=1))
 
 
+@dataclass(frozen=True)
+class Crossings:
+    """Where rays cross isosurfaces: one entry a crossing, those of a ray together and in their order along it.
+
+    Attributes
+    ----------
+    ray
+        number of the ray, counted through the image's rows from the top.
+    depth
+        distance along the ray.
+    surface
+        number of the isovalue.
+    """
+
+    ray: np.ndarray
+    depth: np.ndarray
+    surface: np.ndarray
+
+    def only(self, kept):
+        """Return those that a mask keeps."""
+        return Crossings(self.ray[kept], self.depth[kept], self.surface[kept])
+
+
+def cast_all(volume, isovalues, camera, size, clip=(0.0, np.inf)):
+    """Find all crossings of the image's rays with the surfaces of several isovalues; see `cast`.
+
+    Returns
+    -------
+    Crossings
+    """
+    origins, directions = camera.rays(size)
+    across = directions @ camera.forward
+    to_index = np.linalg.inv(volume.index_to_world[:3, :3])
+    start = ((origins - volume.index_to_world[:3, 3]) @ to_index.T).T
+    step = (directions @ to_index.T).T
+    enter, leave = _clip(
+        start, step, clip[0] / across, clip[1] / across, np.zeros(3), np.array(volume.values.shape[::-1]) - 1.0
+    )
+    rays = np.flatnonzero(enter <= leave)
+    parts = []
+    for number, isovalue in enumerate(isovalues):
+        grid = _Grid(volume.values, float(isovalue), Slack())
+        found = _FullWalk(grid, start[:, rays], step[:, rays], enter[rays], leave[rays]).run()
+        parts.append((rays[found[0]], found[1], np.full(len(found[0]), number)))
+    ray, depth, surface = (np.concatenate(part) for part in zip(*parts))
+    order = np.lexsort((depth, ray))
+    return Crossings(ray[order], depth[order], surface[order])
+
+
 def _unit(vector):
     return vector / np.linalg.norm(vector)
 
@@ -359,6 +408,37 @@ class _Walk:
             if len(new):
                 s = _first_root(cubic[:, new], knots[:, new], crossed[:, new], threshold[new])
                 self.hits[row, rays[new]] = self.enter[rays[new]] + near[new] + s * (far[new] - near[new])
+
+
+class _FullWalk(_Walk):
+    """The same walk, but on through all crossings, whichever way they go."""
+
+    def run(self):
+        self.found = []
+        rays = np.arange(len(self.enter))
+        while len(rays):
+            axis = np.argmin(self.far[:, rays], axis=0)
+            far = np.maximum(np.minimum(self.far[axis, rays], self.leave[rays]), self.near[rays])
+            at = np.flatnonzero((self.grid.matters[self.index[rays]] & 12) == 12)
+            self._collect(rays[at], far[at])
+            self.near[rays] = far
+            rays = self._advance(rays, axis)
+        return [np.concatenate(part) for part in zip(*self.found)]
+
+    def _collect(self, rays, far):
+        """Note the crossings of rays in their cells, one at most on each monotone piece of the cubic."""
+        near, corner = self.near[rays], self._corner(rays)
+        a = np.clip(self.start[:, rays] + near * self.step[:, rays] - corner, 0, 1)
+        b = np.clip(self.start[:, rays] + far * self.step[:, rays] - corner, 0, 1)
+        cubic = _along(self.grid.cells(self.index[rays])[0], a, b - a)
+        knots = _monotone_knots(cubic)
+        inside = _evaluate(cubic[:, None, :], knots) >= 0
+        for piece in range(3):
+            at = np.flatnonzero(inside[piece] != inside[piece + 1])
+            falling = cubic[:, at] * np.where(inside[piece, at], 1, -1)
+            there = np.repeat([[False], [True]], len(at), axis=1)
+            s = _first_root(falling, knots[piece : piece + 2, at], there, np.zeros(len(at)))
+            self.found.append((rays[at], self.enter[rays[at]] + near[at] + s * (far[at] - near[at])))
 
 
 # --- the cubic along a ray --------------------------------------------------------------------------------------------------
