@@ -9,6 +9,9 @@
  * mapper in the opaque pass, or with the volumes where its property makes one of the isosurfaces
  * translucent, and is otherwise a vtkVolume.
  *
+ * Events: vtkCommand::StartEvent in every render, before the property is looked at: the time to
+ * make the transfer functions follow isovalues.
+ *
  * @sa vtkProgressiveIsosurfaceMapper
  */
 #ifndef vtkIsosurfaceVolume_h

@@ -114,13 +114,14 @@ public:
   void Composite(vtkOpenGLRenderWindow* window);
   void RequestRender(vtkOpenGLRenderWindow* window);
   void FillStatistics();
-  void ReleaseGraphics();
+  void ReleaseGraphics(vtkWindow* window);
   void ReleaseInput();
   bool Report(const std::string& problem);
 
   vtkProgressiveIsosurfaceMapper* Owner;
   ProgressivePipeline Pipeline;
   vtkWeakPointer<vtkOpenGLRenderWindow> Window;
+  const vtkWindow* WindowInUse = nullptr; ///< the same, also while it is being destroyed
 
   vtkSmartPointer<vtkImageData> Compressed; // the input, or what it was compressed to
   vtkNew<vtkCompressedVolume> Volume;
@@ -154,7 +155,7 @@ private:
 
 vtkProgressiveIsosurfaceMapper::Internals::~Internals()
 {
-  this->ReleaseGraphics();
+  this->ReleaseGraphics(this->Window);
   if (this->Interactor)
   {
     this->Interactor->RemoveObserver(this->TimerObserver);
@@ -298,22 +299,24 @@ bool vtkProgressiveIsosurfaceMapper::Internals::BindWindow(vtkOpenGLRenderWindow
 {
   if (this->Window && this->Window != window)
   {
-    this->ReleaseGraphics();
+    this->ReleaseGraphics(this->Window);
     window->MakeCurrent();
   }
   this->Window = window;
+  this->WindowInUse = window;
   window->GetShaderCache()->ReleaseCurrentShader();
   return this->Pipeline.Initialize(window) || this->Report(this->Pipeline.GetError());
 }
 
-void vtkProgressiveIsosurfaceMapper::Internals::ReleaseGraphics()
+void vtkProgressiveIsosurfaceMapper::Internals::ReleaseGraphics(vtkWindow* window)
 {
-  if (this->Window)
+  if (window)
   {
-    this->Window->MakeCurrent();
+    window->MakeCurrent();
     this->Pipeline.Release();
   }
   this->Window = nullptr;
+  this->WindowInUse = nullptr;
   this->HandOverTime = vtkTimeStamp();
   this->HaveScene = false;
 }
@@ -701,9 +704,10 @@ void vtkProgressiveIsosurfaceMapper::Render(vtkRenderer* renderer, vtkVolume* vo
 
 void vtkProgressiveIsosurfaceMapper::ReleaseGraphicsResources(vtkWindow* window)
 {
-  if (this->Impl->Window && (!window || window == this->Impl->Window))
+  // A window that is being destroyed says so here too, when weak pointers to it are null already.
+  if (!window || window == this->Impl->WindowInUse)
   {
-    this->Impl->ReleaseGraphics();
+    this->Impl->ReleaseGraphics(window ? window : this->Impl->Window.Get());
   }
   this->Superclass::ReleaseGraphicsResources(window);
 }
