@@ -108,9 +108,9 @@ def test_render_several_isovalues(folder):
     arguments = ("packed.vti", "--size", "200x150", "--orbit", "1/5", "--background", "black")
     inner, _ = render(folder, *arguments, "--color", "#ff0000")
     both, _ = render(folder, *arguments, "--isovalue", -0.3, "--color", "#ff0000", "--color", "#00ff00", "--opacity", 1, "--opacity", 0.5)
-    assert np.isfinite(both).sum() > np.isfinite(inner).sum() and (both <= inner).all()
+    assert np.isfinite(both).sum() > np.isfinite(inner).sum() and np.isfinite(both[np.isfinite(inner)]).all()
     pixels = read_png(folder / "out.png")
-    front = both < inner
+    front = both < inner - 0.1
     assert pixels[front][:, 1].mean() > 30 > pixels[~np.isfinite(both)].max()
 
 
