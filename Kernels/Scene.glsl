@@ -7,6 +7,9 @@
 #define NO_NORMAL 0x80008000u // of a pixel that has none yet; no packed normal has these bits
 #define MAX_GROUPS 65535u   // OpenGL 4.3's guaranteed number of work groups on an axis
 #define MAX_LIGHTS 16
+#define ONE_SIDED 0
+#define TWO_SIDED 1
+#define LIT_LIKE_MESHES 2
 #define MAX_ISOVALUES 16
 #define MAX_CLIPPING_PLANES 16
 
@@ -47,7 +50,8 @@ layout(std140, binding = 0) uniform Scene
   vec4 Colors[MAX_ISOVALUES]; // of the isosurfaces; w: opacity
   vec4 Material;   // ambient, diffuse, specular, specular power
   ivec4 Lighting;  // number of lights (0: unlit); 1: an isosurface is translucent; 1: opaque geometry hides it;
-                   // 1: both sides are lit
+                   // how the sides
+                   // are lit
   Light Lights[MAX_LIGHTS];
 }
 scene;

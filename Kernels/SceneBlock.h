@@ -20,6 +20,7 @@ struct SceneBlock
   static constexpr int MaximumLights = 16;
   static constexpr int MaximumIsovalues = 16;
   static constexpr int MaximumClippingPlanes = 16;
+  static constexpr std::int32_t LitLikeMeshes = 2; ///< LIT_LIKE_MESHES of Scene.glsl
   static constexpr std::int32_t AllRegions = (1 << 27) - 1;
 
   // what a hit depends on: a change restarts the image

@@ -1,5 +1,6 @@
-// Light on a surface, by Phong's model as VTK's volume mapper has it, in view coordinates. Two-sided, a light reaches the
-// surface from either side, one-sided only from where the values are lower.
+// Light on a surface, by Phong's model, in view coordinates. Two-sided, a light reaches the surface from either side, as
+// VTK's volume mapper has it, or only the side that is seen, as VTK's meshes are lit; one-sided only from where the values
+// are lower.
 
 #ifdef COLORED
 #define PALETTE 256
@@ -41,6 +42,13 @@ float Attenuation(Light light, vec3 position, out vec3 toLight)
   return attenuation;
 }
 
+// The side of the surface that counts for a light.
+vec3 Facing(vec3 normal, vec3 toLight, vec3 toViewer)
+{
+  vec3 there = scene.Lighting.w == LIT_LIKE_MESHES ? toViewer : toLight;
+  return scene.Lighting.w != ONE_SIDED && dot(normal, there) > 0.0 ? normal : -normal;
+}
+
 vec3 Illuminate(vec3 position, vec3 normal, vec3 toViewer, vec3 surfaceColor)
 {
   vec3 color = scene.Material.x * surfaceColor;
@@ -48,7 +56,7 @@ vec3 Illuminate(vec3 position, vec3 normal, vec3 toViewer, vec3 surfaceColor)
   {
     vec3 toLight;
     float attenuation = Attenuation(scene.Lights[i], position, toLight);
-    vec3 facing = scene.Lighting.w != 0 && dot(normal, toLight) > 0.0 ? normal : -normal;
+    vec3 facing = Facing(normal, toLight, toViewer);
     float cosine = dot(facing, toLight);
     if (cosine > 0.0)
     {

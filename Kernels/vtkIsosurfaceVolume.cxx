@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkIsosurfaceVolume.h"
 
+#include "vtkCommand.h"
 #include "vtkObjectFactory.h"
 #include "vtkProgressiveIsosurfaceMapper.h"
 
@@ -14,6 +15,7 @@ void vtkIsosurfaceVolume::PrintSelf(ostream& os, vtkIndent indent)
 
 int vtkIsosurfaceVolume::RenderOpaqueGeometry(vtkViewport* viewport)
 {
+  this->InvokeEvent(vtkCommand::StartEvent);
   return vtkProgressiveIsosurfaceMapper::IsTranslucent(this->GetProperty())
     ? 0
     : this->Superclass::RenderVolumetricGeometry(viewport);

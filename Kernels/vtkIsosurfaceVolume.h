@@ -12,6 +12,9 @@
  * A translucent isosurface is drawn over translucent geometry, also where the renderer peels depths
  * of volumes (vtkRenderer::UseDepthPeelingForVolumes): its layers are not parted by such geometry.
  *
+ * Events: vtkCommand::StartEvent in every render, before the property is looked at: the time to
+ * make the transfer functions follow isovalues.
+ *
  * @sa vtkProgressiveIsosurfaceMapper
  */
 #ifndef vtkIsosurfaceVolume_h

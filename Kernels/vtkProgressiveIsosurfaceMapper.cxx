@@ -147,12 +147,13 @@ public:
   void Composite(vtkOpenGLRenderWindow* window);
   void RequestRender(vtkOpenGLRenderWindow* window);
   void FillStatistics();
-  void ReleaseGraphics();
+  void ReleaseGraphics(vtkWindow* window);
   bool Report(const std::string& problem);
 
   vtkProgressiveIsosurfaceMapper* Owner;
   ProgressivePipeline Pipeline;
   vtkWeakPointer<vtkOpenGLRenderWindow> Window;
+  const vtkWindow* WindowInUse = nullptr; ///< the same, also while it is being destroyed
 
   // A volume, compressed; what it was made from, when, and how: image, array, rate, component.
   struct Compressed
@@ -199,7 +200,7 @@ private:
 
 vtkProgressiveIsosurfaceMapper::Internals::~Internals()
 {
-  this->ReleaseGraphics();
+  this->ReleaseGraphics(this->Window);
   if (this->Interactor)
   {
     this->Interactor->RemoveObserver(this->TimerObserver);
@@ -418,22 +419,24 @@ bool vtkProgressiveIsosurfaceMapper::Internals::BindWindow(vtkOpenGLRenderWindow
 {
   if (this->Window && this->Window != window)
   {
-    this->ReleaseGraphics();
+    this->ReleaseGraphics(this->Window);
     window->MakeCurrent();
   }
   this->Window = window;
+  this->WindowInUse = window;
   window->GetShaderCache()->ReleaseCurrentShader();
   return this->Pipeline.Initialize(window) || this->Report(this->Pipeline.GetError());
 }
 
-void vtkProgressiveIsosurfaceMapper::Internals::ReleaseGraphics()
+void vtkProgressiveIsosurfaceMapper::Internals::ReleaseGraphics(vtkWindow* window)
 {
-  if (this->Window)
+  if (window)
   {
-    this->Window->MakeCurrent();
+    window->MakeCurrent();
     this->Pipeline.Release();
   }
   this->Window = nullptr;
+  this->WindowInUse = nullptr;
   this->HandOverTime = vtkTimeStamp();
   this->HaveScene = false;
 }
@@ -498,6 +501,8 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(
 {
   SceneBlock scene =
     TranslateScene(renderer, volume, this->Owner, this->Values.Image, this->Values.Volume);
+  const bool likeMeshes = this->Owner->LitLikeMeshes && scene.Lighting[3] != 0;
+  scene.Lighting[3] = likeMeshes ? SceneBlock::LitLikeMeshes : scene.Lighting[3];
   vtkCamera* camera = renderer->GetActiveCamera();
   vtkMatrix4x4::Invert(camera->GetModelViewTransformMatrix(), this->EyeToWorld);
   const bool translucent = scene.Lighting[1] != 0;
@@ -794,6 +799,7 @@ void vtkProgressiveIsosurfaceMapper::PrintSelf(ostream& os, vtkIndent indent)
      << "\n";
   os << indent << "ColorComponent: " << this->ColorComponent << "\n";
   os << indent << "ColorLookupTable: " << this->ColorLookupTable << "\n";
+  os << indent << "LitLikeMeshes: " << this->LitLikeMeshes << "\n";
   os << indent << "SpeculationLimit: " << this->SpeculationLimit << "\n";
   os << indent << "MemoryBudget: " << this->MemoryBudget << "\n";
   os << indent << "DecodeWholeVolume: " << this->DecodeWholeVolume << "\n";
@@ -884,9 +890,10 @@ void vtkProgressiveIsosurfaceMapper::Render(vtkRenderer* renderer, vtkVolume* vo
 
 void vtkProgressiveIsosurfaceMapper::ReleaseGraphicsResources(vtkWindow* window)
 {
-  if (this->Impl->Window && (!window || window == this->Impl->Window))
+  // A window that is being destroyed says so here too, when weak pointers to it are null already.
+  if (!window || window == this->Impl->WindowInUse)
   {
-    this->Impl->ReleaseGraphics();
+    this->Impl->ReleaseGraphics(window ? window : this->Impl->Window.Get());
   }
   this->Superclass::ReleaseGraphicsResources(window);
 }

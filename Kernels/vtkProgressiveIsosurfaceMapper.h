@@ -114,6 +114,17 @@ public:
 
   ///@{
   /**
+   * Where the renderer's lighting is two-sided (its default), whether only the side of a surface
+   * that is seen is lit, as VTK's meshes are. Default off: as with VTK's volume mapper a light
+   * reaches both sides, also from behind.
+   */
+  vtkSetMacro(LitLikeMeshes, bool);
+  vtkGetMacro(LitLikeMeshes, bool);
+  vtkBooleanMacro(LitLikeMeshes, bool);
+  ///@}
+
+  ///@{
+  /**
    * The most blocks that a ray may test in one pass, 1 (no speculation) … 64. Default 64.
    */
   vtkSetClampMacro(SpeculationLimit, int, 1, 64);
@@ -247,6 +258,7 @@ protected:
   char* ColorArrayName = nullptr;
   int ColorComponent = 0;
   vtkScalarsToColors* ColorLookupTable = nullptr;
+  bool LitLikeMeshes = false;
   int SpeculationLimit = 64;
   vtkTypeInt64 MemoryBudget = 0;
   bool DecodeWholeVolume = true;

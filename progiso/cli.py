@@ -159,17 +159,25 @@ def _add_contour(commands):
 
 
 def _add_render(commands):
-    command = _add_command(commands, "render", _render, "render an isosurface off screen")
+    command = _add_command(commands, "render", _render, "render isosurfaces off screen")
     _add_input(command)
-    command.add_argument("--isovalue", type=float, required=True, help="in the image's units")
+    command.add_argument(
+        "--isovalue", type=float, required=True, action="append",
+        help="in the image's units; may be given several times",
+    )  # fmt: skip
     command.add_argument(
         "--size", type=_size, default=(1280, 720), metavar="WxH", help="pixels (default: 1280x720)"
     )
     _add_array(command)
     _add_camera(command)
     command.add_argument(
-        "--color", default="oldlace", help="name or #rrggbb (default: %(default)s)"
-    )
+        "--color", action="append",
+        help="name or #rrggbb (default: oldlace); once, or once for each isovalue",
+    )  # fmt: skip
+    command.add_argument(
+        "--opacity", type=float, action="append",
+        help="0 to 1 (default: 1); once, or once for each isovalue",
+    )  # fmt: skip
     command.add_argument("--background", default="#20242b", help="name or #rrggbb")
     command.add_argument("--output", type=Path, metavar="PNG", help="write the image")
     command.add_argument(
@@ -412,11 +420,12 @@ def _render(parsed):
             parsed.array,
             parsed.component,
             not parsed.no_speculation,
-            parsed.color,
+            parsed.color or "oldlace",
             parsed.background,
             progress,
             parsed.memory_budget,
             parsed.detailed,
+            parsed.opacity or 1.0,
         )
     _write_results(result, parsed)
     _print_summary(result)

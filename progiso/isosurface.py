@@ -8,6 +8,7 @@ from numbers import Real
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction, vtkVolumeProperty
 
 from ._vtk import image_data
+from .appearance import MAX_ISOVALUES, as_list, check_count, is_color, set_colors, set_opacities
 from .vtkProgIsoKernels import vtkIsosurfaceVolume, vtkProgressiveIsosurfaceMapper
 
 #: Most blocks that a ray tests ahead in one pass.
@@ -26,17 +27,19 @@ def make_isosurface(
     diffuse=0.8,
     specular=0.15,
     specular_power=20.0,
+    opacity=1.0,
 ):
-    """Make a prop that shows an isosurface of a plain or compressed volume.
+    """Make a prop that shows isosurfaces of a plain or compressed volume.
 
     Parameters
     ----------
     image : vtkmodules.vtkCommonDataModel.vtkImageData
         Plain (then compressed by the mapper at `rate`), or a compressed volume.
-    isovalue : float
-        In the units of the image's values.
-    color : sequence of 3 float, default: white
-        Red, green and blue from 0 to 1.
+    isovalue : float or sequence of float
+        In the units of the image's values; at most 16.
+    color : sequence of 3 float, a sequence of such, or vtkColorTransferFunction, default: white
+        Red, green and blue from 0 to 1: one colour for all isovalues, or one for each, which it
+        keeps when it is changed. A transfer function gives the colours at the isovalues.
     rate : float, default: 8
         Bits per sample for a plain image, in (0, 32].
     speculation : bool or int, default: True
@@ -48,6 +51,9 @@ def make_isosurface(
         Whether light falls on the surface; without, it has the plain colour.
     ambient, diffuse, specular, specular_power : float
         Material, as in `vtkVolumeProperty`: the first three from 0 to 1.
+    opacity : float or sequence of float, default: 1
+        One for all isovalues, or one for each: 0 hides a surface, below 1 what lies behind it
+        shines through.
 
     Returns
     -------
@@ -73,11 +79,10 @@ def make_isosurface(
     mapper = vtkProgressiveIsosurfaceMapper()
     mapper.SetInputData(image_data(image))
     mapper.SetRate(_in_range("rate", rate, 0, 32, above=True))
+    mapper.SetLitLikeMeshes(True)  # it takes the place of a contour's mesh
     mapper.SetSpeculationLimit(_speculation_limit(speculation))
     mapper.SetMemoryBudget(int(_in_range("memory_budget", memory_budget, 0, 2**62)))
     properties = vtkVolumeProperty()
-    properties.GetIsoSurfaceValues().SetValue(0, _finite("isovalue", isovalue))
-    properties.SetColor(_constant_color(color))
     properties.SetShade(bool(shade))
     properties.SetAmbient(_in_range("ambient", ambient, 0, 1))
     properties.SetDiffuse(_in_range("diffuse", diffuse, 0, 1))
@@ -86,20 +91,55 @@ def make_isosurface(
     volume = vtkIsosurfaceVolume()
     volume.SetMapper(mapper)
     volume.SetProperty(properties)
+    _set_isovalues(volume, isovalue, color, opacity)
     return volume
 
 
-def _constant_color(color):
-    """A transfer function of one colour, so that moving the isovalue keeps it."""
-    function = vtkColorTransferFunction()
-    function.AddRGBPoint(0.0, *(_in_range("color", c, 0, 1) for c in color))
-    return function
+def _set_isovalues(volume, isovalue, color, opacity):
+    """Isovalues with the colours and opacities that they keep."""
+    given = [isovalue] if isinstance(isovalue, str) else as_list(isovalue, _is_number)
+    if not 1 <= len(given) <= MAX_ISOVALUES:
+        raise ValueError(f"isovalue: give 1 to {MAX_ISOVALUES} isovalues, not {len(given)}")
+    opacities = _opacities(opacity)
+    check_count("opacity", opacities, given)
+    for i, value in enumerate(given):
+        volume.GetProperty().GetIsoSurfaceValues().SetValue(i, _finite("isovalue", value))
+    set_opacities(volume, opacities)
+    if isinstance(color, vtkColorTransferFunction):
+        volume.GetProperty().SetColor(color)
+    else:
+        set_colors(volume, _rgb_colors(color, given))
+
+
+def _opacities(opacity):
+    given = [opacity] if isinstance(opacity, str) else as_list(opacity, _is_number)
+    return [_in_range("opacity", each, 0, 1) for each in given]
+
+
+def _rgb_colors(color, isovalues):
+    """Colours as tuples, one or as many as isovalues."""
+    colors = [_rgb(each) for each in as_list(color, is_color)]
+    check_count("color", colors, isovalues)
+    return colors
+
+
+def _rgb(color):
+    wanted = f"color must be red, green and blue from 0 to 1, got {color!r}"
+    if isinstance(color, str) or not hasattr(color, "__len__"):
+        raise TypeError(wanted)
+    if len(color) != 3:
+        raise ValueError(wanted)
+    return tuple(_in_range("color", part, 0, 1) for part in color)
 
 
 def _speculation_limit(speculation):
     if isinstance(speculation, bool):
         return MAX_SPECULATION if speculation else 1
     return int(_in_range("speculation", speculation, 1, MAX_SPECULATION))
+
+
+def _is_number(value):
+    return isinstance(value, Real)
 
 
 def _finite(name, value):

@@ -6,151 +6,16 @@ Importing progiso registers both with pyvista 0.48 or newer. With an older pyvis
 
 from __future__ import annotations
 
-import numpy as np
 import pyvista
 
-from .compression import as_compressed, compress, decompress, describe, is_compressed
-from .isosurface import make_isosurface
+from .compression import compress, decompress, describe, is_compressed
+from .pyvista_capture import complete
+from .pyvista_picking import renderer_of, surface_at, track_surface_clicks
+from .pyvista_surfaces import add_isosurface, add_isosurface_slider, clip
 from .statistics import depth, statistics
 from .surface import contour
 
-
-def add_isosurface(
-    plotter,
-    volume,
-    isovalue,
-    *,
-    scalars=None,
-    component=0,
-    color=None,
-    rate=8.0,
-    speculation=True,
-    memory_budget=0,
-    lighting=True,
-    ambient=0.05,
-    diffuse=0.8,
-    specular=0.15,
-    specular_power=20.0,
-    name=None,
-    reset_camera=None,
-    pickable=True,
-    render=True,
-    user_matrix=None,
-):
-    """Add an isosurface of a volume to a plotter, without extracting a mesh.
-
-    The surface is rendered from compressed data, progressively while the view is interactive and
-    completely in screenshots.
-
-    Parameters
-    ----------
-    plotter : pyvista.BasePlotter
-        Where to add it.
-    volume : pyvista.ImageData or numpy.ndarray
-        A plain image, a compressed volume, or a three-dimensional array. Plain data are
-        compressed at `rate`.
-    isovalue : float
-        In the units of the volume's values.
-    scalars : str, optional
-        Point or cell array of a plain image; by default the active scalars.
-    component : int, default: 0
-        Component of that array.
-    color : ColorLike, optional
-        Anything pyvista takes for a colour; by default the theme's.
-    rate : float, default: 8
-        Bits per sample that plain data are compressed to, in (0, 32].
-    speculation : bool or int, default: True
-        Whether rays test several blocks ahead in one pass, or how many at most (1 to 64).
-    memory_budget : int, default: 0
-        Bound in bytes on the GPU memory beside the compressed volume; 0 for the mapper's own
-        choice.
-    lighting : bool, default: True
-        Whether light falls on the surface.
-    ambient, diffuse, specular : float
-        Material, from 0 to 1.
-    specular_power : float, default: 20
-        From 0 to 128.
-    name : str, optional
-        An actor of this name is replaced.
-    reset_camera : bool, optional
-        Whether the camera is reset to see everything; by default when it was not set yet.
-    pickable : bool, default: True
-        Whether the prop can be picked.
-    render : bool, default: True
-        Whether to render at once if the plotter is showing.
-    user_matrix : TransformLike, optional
-        Transformation of the prop, applied last.
-
-    Returns
-    -------
-    vtkIsosurfaceVolume
-        The prop. Change the isovalue by
-        ``prop.GetProperty().GetIsoSurfaceValues().SetValue(0, value)``.
-
-    Raises
-    ------
-    TypeError
-        When `volume` is neither an image nor an array.
-    ValueError
-        When a number is out of its range or there is no such array.
-    RuntimeError
-        When the data cannot be compressed, for example because of NaN values.
-
-    Examples
-    --------
-    >>> import progiso
-    >>> import pyvista as pv
-    >>> image = pv.ImageData(dimensions=(64, 64, 64))
-    >>> image["distance"] = ((image.points - image.center) ** 2).sum(axis=1) ** 0.5
-    >>> plotter = pv.Plotter(off_screen=True)
-    >>> prop = progiso.add_isosurface(plotter, image, isovalue=20, color="tan")
-    >>> picture = plotter.screenshot(return_img=True)
-    """
-    image = _compressed(volume, rate, scalars, component)
-    prop = make_isosurface(
-        image,
-        isovalue,
-        color=pyvista.Color(color, default_color=pyvista.global_theme.color).float_rgb,
-        rate=rate,
-        speculation=speculation,
-        memory_budget=memory_budget,
-        shade=lighting,
-        ambient=ambient,
-        diffuse=diffuse,
-        specular=specular,
-        specular_power=specular_power,
-    )
-    if user_matrix is not None:
-        prop.SetUserMatrix(pyvista.vtkmatrix_from_array(_matrix(user_matrix)))
-    plotter.add_actor(prop, reset_camera=reset_camera, name=name, pickable=pickable, render=render)
-    return prop
-
-
-def _compressed(volume, rate, scalars, component):
-    """The compressed volume of whatever was passed."""
-    if isinstance(volume, np.ndarray):
-        if volume.ndim != 3:
-            raise TypeError(f"an array must have 3 dimensions, this one has {volume.ndim}")
-        volume = pyvista.wrap(volume)
-    if not getattr(volume, "IsA", lambda _: False)("vtkImageData"):
-        raise TypeError(f"expected pyvista.ImageData or an array, got {type(volume).__name__}")
-    return as_compressed(volume, rate, scalars, component)
-
-
-def _matrix(transform):
-    """A 4x4 array of a pyvista or VTK transform, matrix, or array."""
-    if hasattr(transform, "GetMatrix"):
-        transform = transform.GetMatrix()
-    if hasattr(transform, "GetElement"):
-        size = 4 if transform.IsA("vtkMatrix4x4") else 3
-        rows = range(size)
-        transform = [[transform.GetElement(i, j) for j in rows] for i in rows]
-    given = np.asarray(transform, float)
-    if given.shape not in ((3, 3), (4, 4)):
-        raise ValueError(f"user_matrix must be 3x3 or 4x4, got shape {given.shape}")
-    matrix = np.eye(4)
-    matrix[: given.shape[0], : given.shape[1]] = given
-    return matrix
+__all__ = ["ImageAccessor", "IsosurfaceComponent", "add_isosurface"]
 
 
 class ImageAccessor:
@@ -278,18 +143,20 @@ class IsosurfaceComponent:
         self._plotter = plotter
 
     def add_isosurface(self, volume, isovalue, **kwargs):
-        """Add an isosurface; parameters as in :func:`progiso.add_isosurface`.
+        """Add isosurfaces; parameters as in :func:`progiso.add_isosurface`.
 
         Parameters
         ----------
         volume : pyvista.ImageData or numpy.ndarray
             A plain image, a compressed volume, or a three-dimensional array.
-        isovalue : float
-            In the units of the volume's values.
+        isovalue : float or sequence of float
+            In the units of the volume's values; at most 16.
         **kwargs : dict, optional
-            ``scalars``, ``component``, ``color``, ``rate``, ``speculation``, ``memory_budget``,
-            ``lighting``, ``ambient``, ``diffuse``, ``specular``, ``specular_power``, ``name``,
-            ``reset_camera``, ``pickable``, ``render`` and ``user_matrix``.
+            ``scalars``, ``component``, ``color``, ``cmap``, ``clim``, ``log_scale``, ``opacity``,
+            ``show_scalar_bar``, ``scalar_bar_args``, ``rate``, ``speculation``,
+            ``memory_budget``, ``lighting``, ``ambient``, ``diffuse``, ``specular``,
+            ``specular_power``, ``name``, ``reset_camera``, ``pickable``, ``render`` and
+            ``user_matrix``.
 
         Returns
         -------
@@ -303,9 +170,151 @@ class IsosurfaceComponent:
         >>> image = pv.ImageData(dimensions=(16, 16, 16))
         >>> image["height"] = image.points[:, 2]
         >>> plotter = pv.Plotter(off_screen=True)
-        >>> prop = plotter.progiso.add_isosurface(image, isovalue=7.5, color="ivory")
+        >>> prop = plotter.progiso.add_isosurface(image, isovalue=[3, 7.5], opacity=[0.5, 1])
         """
         return add_isosurface(self._plotter, volume, isovalue, **kwargs)
+
+    def add_isosurface_slider(self, volume, rng=None, value=None, **kwargs):
+        """Add an isosurface with a slider for its isovalue.
+
+        The volume is compressed once; moving the slider renders, progressively.
+
+        Parameters
+        ----------
+        volume : pyvista.ImageData or numpy.ndarray
+            A plain image, a compressed volume, or a three-dimensional array.
+        rng : sequence of 2 float, optional
+            Least and greatest isovalue; by default the range of the volume's values.
+        value : float, optional
+            The first isovalue; by default the middle of `rng`.
+        **kwargs : dict, optional
+            ``title`` (by default the array's name), ``pointa``, ``pointb``, ``widget_color``,
+            ``style``, ``fmt`` and ``interaction_event`` (by default ``"always"``: while the
+            slider moves) as in :meth:`pyvista.Plotter.add_slider_widget`, and what
+            :meth:`add_isosurface` takes.
+
+        Returns
+        -------
+        vtkIsosurfaceVolume
+            The prop; the slider is in ``plotter.slider_widgets``.
+
+        Examples
+        --------
+        >>> import progiso
+        >>> import pyvista as pv
+        >>> image = pv.ImageData(dimensions=(16, 16, 16))
+        >>> image["height"] = image.points[:, 2]
+        >>> plotter = pv.Plotter(off_screen=True)
+        >>> prop = plotter.progiso.add_isosurface_slider(image, cmap="viridis")
+        >>> prop.GetProperty().GetIsoSurfaceValues().GetValue(0)
+        7.5
+        """
+        return add_isosurface_slider(self._plotter, volume, rng, value, **kwargs)
+
+    def clip(self, prop, normal="x", origin=None, invert=True):
+        """Clip a prop's isosurfaces by a plane, instead of the planes that clipped them before.
+
+        Parameters
+        ----------
+        prop : vtkIsosurfaceVolume
+            What `add_isosurface` returned.
+        normal : str or sequence of 3 float, default: "x"
+            The plane's normal, or ``"x"``, ``"-x"``, ``"y"`` and so on.
+        origin : sequence of 3 float, optional
+            A point of the plane; by default the centre of the volume.
+        invert : bool, default: True
+            As in pyvista's ``clip``: what the normal points to goes away; else it stays.
+
+        Examples
+        --------
+        A plane to be moved by hand:
+
+        >>> import progiso
+        >>> import pyvista as pv
+        >>> image = pv.ImageData(dimensions=(16, 16, 16))
+        >>> image["height"] = image.points[:, 2]
+        >>> plotter = pv.Plotter(off_screen=True)
+        >>> prop = plotter.progiso.add_isosurface(image, 7.5)
+        >>> def cut(normal, origin):
+        ...     plotter.progiso.clip(prop, normal, origin)
+        >>> widget = plotter.add_plane_widget(cut)
+        """
+        clip(prop, normal, origin, invert)
+
+    def surface_at(self, prop, x, y):
+        """Tell where a prop's surface is met at a pixel of the window.
+
+        Parameters
+        ----------
+        prop : vtkIsosurfaceVolume
+            What `add_isosurface` returned.
+        x, y : float
+            Pixel from the left and from the bottom, as ``plotter.mouse_position`` has it.
+
+        Returns
+        -------
+        SurfacePoint or None
+            ``position`` in world coordinates and ``isovalue`` of the nearest surface (of
+            translucent surfaces the isovalue is that of the last that shows); None where there is
+            none. The image is completed first.
+
+        Examples
+        --------
+        >>> import progiso
+        >>> import pyvista as pv
+        >>> image = pv.ImageData(dimensions=(16, 16, 16))
+        >>> image["height"] = image.points[:, 2]
+        >>> plotter = pv.Plotter(off_screen=True, window_size=(200, 200))
+        >>> prop = plotter.progiso.add_isosurface(image, 7.5)
+        >>> plotter.show(auto_close=False)
+        >>> plotter.progiso.surface_at(prop, 100, 100).isovalue
+        7.5
+        """
+        return surface_at(self._plotter, prop, x, y)
+
+    def track_surface_clicks(self, prop, callback, side="right"):
+        """Call a function with each point of a prop's surface that is clicked on.
+
+        Parameters
+        ----------
+        prop : vtkIsosurfaceVolume
+            What `add_isosurface` returned.
+        callback : callable
+            Called with ``position`` and ``isovalue`` of :meth:`surface_at`; not where a click
+            meets no surface.
+        side : str, default: "right"
+            The mouse button, ``"right"`` or ``"left"``.
+
+        Examples
+        --------
+        >>> import progiso
+        >>> import pyvista as pv
+        >>> image = pv.ImageData(dimensions=(16, 16, 16))
+        >>> image["height"] = image.points[:, 2]
+        >>> plotter = pv.Plotter(off_screen=True)
+        >>> prop = plotter.progiso.add_isosurface(image, 7.5)
+        >>> plotter.progiso.track_surface_clicks(prop, lambda position, isovalue: print(position))
+        """
+        track_surface_clicks(self._plotter, prop, callback, side)
+
+    def complete(self):
+        """Finish the image that shows, however long that takes.
+
+        ``plotter.screenshot``, ``write_frame`` and ``get_image_depth`` do it by themselves;
+        ``plotter.image`` and VTK's own filters on an interactive window take what is there.
+
+        Examples
+        --------
+        >>> import progiso
+        >>> import pyvista as pv
+        >>> image = pv.ImageData(dimensions=(16, 16, 16))
+        >>> image["height"] = image.points[:, 2]
+        >>> plotter = pv.Plotter(off_screen=True)
+        >>> prop = plotter.progiso.add_isosurface(image, 7.5)
+        >>> plotter.show(auto_close=False)
+        >>> plotter.progiso.complete()
+        """
+        complete(self._plotter)
 
     def statistics(self, prop):
         """Statistics of a prop's last image, see :func:`progiso.statistics`.
@@ -319,7 +328,7 @@ class IsosurfaceComponent:
         -------
         dict
         """
-        return statistics(prop.GetMapper(), self._plotter.renderer)
+        return statistics(prop.GetMapper(), renderer_of(self._plotter, prop))
 
     def depth(self, prop):
         """Distances from the camera in a prop's last image, see :func:`progiso.depth`.

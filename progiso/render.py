@@ -16,6 +16,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 from ._files import atomic_path
 from ._opengl import check_display
 from ._vtk import image_data, vtk_errors
+from .appearance import as_list, is_color
 from .camera import orbit_camera, view_camera
 from .compression import as_compressed
 from .isosurface import make_isosurface
@@ -61,15 +62,16 @@ def render(
     progress=None,
     memory_budget=0,
     detailed=False,
+    opacity=1.0,
 ):
-    """Render an isosurface off screen until it is complete.
+    """Render isosurfaces off screen until the image is complete.
 
     Parameters
     ----------
     image : vtkmodules.vtkCommonDataModel.vtkImageData
         Plain, or a compressed volume.
-    isovalue : float
-        In the units of the image's values.
+    isovalue : float or sequence of float
+        In the units of the image's values; at most 16.
     size : tuple of int, default: (1280, 720)
         Width and height in pixels, 1 to 16384 each.
     orbit : tuple of int, optional
@@ -83,7 +85,8 @@ def render(
     speculation : bool or int, default: True
         Whether rays test several blocks ahead in one pass, or how many at most (1 to 64).
     color, background : str or sequence of 3 float
-        A colour's name, ``#rrggbb``, or red, green and blue from 0 to 1.
+        A colour's name, ``#rrggbb``, or red, green and blue from 0 to 1. A sequence of colours
+        has one for each isovalue.
     progress : callable, optional
         Called with the fraction done, from 0 to 1, while a plain image is compressed.
     memory_budget : int, default: 0
@@ -92,6 +95,8 @@ def render(
     detailed : bool, default: False
         Whether the statistics tell the time of each stage and the distinct blocks of each pass,
         which costs time itself.
+    opacity : float or sequence of float, default: 1
+        One for all isovalues, or one for each; below 1 what lies behind shines through.
 
     Returns
     -------
@@ -122,9 +127,10 @@ def render(
     volume = make_isosurface(
         image,
         isovalue,
-        parse_color(color),
+        [parse_color(each) for each in as_list(color, is_color)],
         speculation=speculation,
         memory_budget=memory_budget,
+        opacity=opacity,
     )
     volume.GetMapper().SetDetailedStatistics(bool(detailed))
     window, renderer = _scene(volume, width, height, parse_color(background))

@@ -148,7 +148,9 @@ vtkStandardNewMacro(vtkProgressiveIsosurfaceRepresentation);
 //------------------------------------------------------------------------------
 vtkProgressiveIsosurfaceRepresentation::vtkProgressiveIsosurfaceRepresentation()
 {
-  this->VolumeMapper = vtkSmartPointer<vtkProgressiveIsosurfaceMapper>::New();
+  auto mapper = vtkSmartPointer<vtkProgressiveIsosurfaceMapper>::New();
+  mapper->LitLikeMeshesOn(); // as Contour's surface, whose place it takes
+  this->VolumeMapper = mapper;
   this->Actor = vtkSmartPointer<vtkPVIsosurfaceLODVolume>::New();
   this->Actor->SetProperty(this->Property);
   this->Actor->SetLODMapper(this->OutlineMapper);

@@ -11,6 +11,7 @@ import progiso
 import pytest
 import tolerances
 from oracle.caster import Camera, cast
+from pictures import read_png
 from scenes import check_depth, orbit
 from support import blobs, make_image, marschner_lobb, reference_values, reference_volume, same_bits, values_of
 from test_statistics import check_memory
@@ -102,6 +103,17 @@ def test_render(folder):
     check_memory(image, statistics)
 
 
+def test_render_several_isovalues(folder):
+    """The outer surface is seen first, in its colour; more surfaces cover more pixels."""
+    arguments = ("packed.vti", "--size", "200x150", "--orbit", "1/5", "--background", "black")
+    inner, _ = render(folder, *arguments, "--color", "#ff0000")
+    both, _ = render(folder, *arguments, "--isovalue", -0.3, "--color", "#ff0000", "--color", "#00ff00", "--opacity", 1, "--opacity", 0.5)
+    assert np.isfinite(both).sum() > np.isfinite(inner).sum() and np.isfinite(both[np.isfinite(inner)]).all()
+    pixels = read_png(folder / "out.png")
+    front = both < inner - 0.1
+    assert pixels[front][:, 1].mean() > 30 > pixels[~np.isfinite(both)].max()
+
+
 def test_speculation_and_memory_budget_change_no_depth(folder):
     """Speculation only saves passes; with little memory the image is the same."""
     progiso.save(progiso.compress(make_image(blobs((90, 80, 100), 3, waves=6)), 6), folder / "large.vti")
@@ -184,6 +196,8 @@ FAILURES = {
     "budget": (["render", "packed.vti", "--isovalue", "0", "--memory-budget", "1000"], "at least"),
     "budget's unit": (["render", "packed.vti", "--isovalue", "0", "--memory-budget", "3T"], "3T"),
     "isovalue": (["render", "packed.vti", "--isovalue", "nan"], "isovalue"),
+    "opacities": (["render", "packed.vti", "--isovalue", "0", "--opacity", "1", "--opacity", "0.5"], "opacity: 2 for 1"),
+    "colours": (["render", "packed.vti", "--isovalue", "0", "--color", "red", "--color", "tan"], "color: 2 for 1"),
     "output": (["compress", "plain.vti", "nowhere/x.vti"], "nowhere"),
     "appended": (["compress", "plain.vti", "x.zfp", "--appended"], "x.zfp"),
 }
