@@ -90,6 +90,9 @@ DEPTH_BUFFER = 2.0**-22
 #: off by up to half a voxel in 18, 7 levels, at every face; normals that jump at blocks are worse.
 SHADING_LEVELS = 4
 
+#: The same surface beside its mesh, whose light is interpolated across triangles half a voxel wide: mean grey levels.
+MESH_LIGHT_MEAN = 5
+
 # --- benchmarks -------------------------------------------------------------------------------------------------------------------
 
 #: Depths of VTK's pictures, in voxels: a plane's mesh lies on it but for single precision; the volume mapper's samples come from texture

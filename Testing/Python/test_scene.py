@@ -12,8 +12,9 @@ from support import blobs, make_image, noise, reference_volume, vtk_messages
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkFloatArray
 from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
 from vtkmodules.vtkFiltersSources import vtkPlaneSource
-from vtkmodules.vtkRenderingCore import vtkActor, vtkColorTransferFunction, vtkPolyDataMapper
+from vtkmodules.vtkRenderingCore import vtkActor, vtkColorTransferFunction, vtkLight, vtkPolyDataMapper
 
 SIZE = (160, 120)
 ISOVALUE = 0.1
@@ -274,3 +275,43 @@ def test_errors_name_what_is_wrong(name):
     with vtk_messages() as messages:
         scene.window.Render()
     assert any("vtkProgressiveIsosurfaceMapper" in m or "vtkImageZFPCompress" in m for m in messages), messages
+
+
+def mesh_scene(image, isovalue, scene):
+    """The mesh of an isosurface in a window like a scene's, with its camera and lights."""
+    contour = vtkFlyingEdges3D()
+    contour.SetInputData(image)
+    contour.SetValue(0, isovalue)
+    mapper = vtkPolyDataMapper()
+    mapper.SetInputConnection(contour.GetOutputPort())
+    mapper.ScalarVisibilityOff()
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    look = scene.volume.GetProperty()
+    actor.GetProperty().SetAmbient(look.GetAmbient())
+    actor.GetProperty().SetDiffuse(look.GetDiffuse())
+    actor.GetProperty().SetSpecular(look.GetSpecular())
+    scene.renderer.RemoveVolume(scene.volume)
+    scene.renderer.AddActor(actor)
+    scene.window.Render()
+    return scene.picture().astype(int)
+
+
+def test_lit_like_meshes():
+    """With a light from beside and behind the surface looks like FlyingEdges' mesh, and not as VTK's volume mapper has it."""
+    image = make_image(blobs((40, 40, 40)))
+    pictures = {}
+    for like_meshes in (True, False):
+        camera = orbit(reference_volume(progiso.compress(image, 16)), 1, 4)
+        scene = Scene(image, 0.1, camera, (160, 120), lit=True, Rate=24.0, LitLikeMeshes=like_meshes)
+        colour(scene.volume, (1, 1, 1))
+        light = vtkLight()
+        light.SetLightTypeToCameraLight()
+        light.SetPosition(1.0, 0.3, -0.8)
+        light.SetFocalPoint(0.0, 0.0, 0.0)
+        scene.renderer.AddLight(light)
+        scene.render()
+        pictures[like_meshes] = scene.picture().astype(int)
+        mesh = mesh_scene(image, 0.1, scene)
+    off = {key: np.abs(picture - mesh).mean() for key, picture in pictures.items()}
+    assert off[True] < tolerances.MESH_LIGHT_MEAN and off[False] > 5 * tolerances.MESH_LIGHT_MEAN, off
