@@ -41,10 +41,10 @@ from vtkmodules.vtkRenderingVolume import vtkGPUVolumeRayCastMapper
 
 
 def import_everything():
-    """Import all modules of the package but the one that wants pyvista, which does not come along."""
+    """Import all modules of the package but those that want pyvista, which does not come along."""
     for module in pkgutil.walk_packages(progiso.__path__, "progiso."):
         name = module.name.rsplit(".", 1)[-1]
-        if name not in ("__main__", "pyvista_plugin") and not name.startswith("lib"):
+        if name != "__main__" and not name.startswith(("lib", "pyvista_")):
             importlib.import_module(module.name)
     with contextlib.suppress(ImportError):
         import zfpy  # noqa: F401
