@@ -10,7 +10,7 @@ from oracle.caster import Camera
 from stages import SIZE, Stage
 from support import blobs, make_image, reference_volume
 from test_conformance import GREEN, NESTED, OPAQUE, RED, SHAPE, TURNED, ball, show, wall
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkSelectionNode
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPlane, vtkSelectionNode
 from vtkmodules.vtkRenderingCore import vtkCellPicker, vtkHardwareSelector, vtkPointPicker, vtkPropPicker, vtkRenderer, vtkWorldPointPicker
 from vtkmodules.vtkRenderingVolume import vtkVolumePicker
 
@@ -139,6 +139,31 @@ def test_the_picker_keeps_to_its_renderer(image):
         assert picker.Pick(x, y, 0, stage.renderer) == inside
         assert not picker.Pick(x, y, 0, other)
     assert hits[:, :].sum() > 1000
+
+
+@pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
+def test_what_is_cut_away_is_not_picked(image, surfaces):
+    """Cropped and clipped: what shows behind the cut is picked."""
+    stage = Stage(True)
+    mapper = show(stage, image, surfaces).GetMapper()
+    whole = stage.picture() is not None and first_crossings(stage, image, surfaces)
+    mapper.CroppingOn()
+    bounds = image.GetBounds()
+    mapper.SetCroppingRegionPlanes(bounds[0] + 9, bounds[1] + 1, bounds[2] - 1, bounds[3] + 1, bounds[4] - 1, bounds[5] + 1)
+    mapper.SetCroppingRegionFlagsToSubVolume()
+    plane = vtkPlane()
+    plane.SetOrigin(image.GetCenter())
+    plane.SetNormal(0, 0, -1)
+    mapper.AddClippingPlane(plane)
+    stage.render()
+    picker, picked, others = progiso.vtkIsosurfacePicker(), 0, 0
+    for pixel in PIXELS:
+        if picker.Pick(*pixel, 0, stage.renderer):
+            place = picker.GetPickPosition()
+            assert place[0] > bounds[0] + 9 - 1e-3 and place[2] < image.GetCenter()[2] + 1e-3
+            picked += 1
+            others += np.abs(np.subtract(place, whole[pixel][0])).max() > 0.1
+    assert picked > 10 and others > 3
 
 
 def test_picking_is_told_of(image):
