@@ -1,6 +1,7 @@
 // What a pixel's ray has met, in sections of a word a pixel: the hit's key; its depth, the parameter t, of a translucent
-// image that of the first hit; with several isovalues the number of the one that was hit; where another volume gives the
-// colours, its value; where opaque geometry hides what is behind it, the window's depth.
+// image that of the first hit; with several isovalues the number of the one that was hit, and in the upper half that of the
+// first hit; where another volume gives the colours, its value; where opaque geometry hides what is behind it, the
+// window's depth.
 
 struct Hit
 {
@@ -19,7 +20,7 @@ uint ImagePixels()
 Hit HitOf(uint pixel)
 {
 #ifdef SEVERAL_ISOVALUES
-  return Hit(hits[pixel], int(hits[2u * ImagePixels() + pixel]));
+  return Hit(hits[pixel], int(hits[2u * ImagePixels() + pixel] & 0xFFFFu));
 #else
   return Hit(hits[pixel], 0);
 #endif
@@ -71,7 +72,9 @@ void KeepHit(uint pixel, Hit hit, float depth)
     hits[ImagePixels() + pixel] = floatBitsToUint(depth);
   }
 #ifdef SEVERAL_ISOVALUES
-  hits[2u * ImagePixels() + pixel] = uint(hit.Surface);
+  uint at = 2u * ImagePixels() + pixel;
+  uint firstSurface = first ? uint(hit.Surface) : hits[at] >> 16;
+  hits[at] = uint(hit.Surface) | firstSurface << 16;
 #endif
 }
 #endif

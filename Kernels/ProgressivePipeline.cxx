@@ -662,6 +662,7 @@ PixelHit ProgressivePipeline::ReadHit(std::int64_t pixel)
   if (this->Extent.SeveralIsovalues)
   {
     read(2, &hit.Surface);
+    hit.Surface >>= 16;
   }
   return hit;
 }

@@ -45,13 +45,12 @@ struct TimedPass : PassRecord
   double ElapsedMilliseconds = 0.0; ///< from the start of the image to the end of the pass
 };
 
-/// What a pixel's ray has met. Of a translucent image the key and the surface are those of the last
-/// hit.
+/// What a pixel's ray has met. Of a translucent image the key is that of the last hit.
 struct PixelHit
 {
   std::uint32_t Key = 0xFFFFFFFFu; ///< none
   float Depth = 0.0f;              ///< parameter t of the first hit
-  std::uint32_t Surface = 0;       ///< number of the isovalue among those that show
+  std::uint32_t Surface = 0;       ///< first hit's isovalue, among those that show
 };
 
 class ProgressivePipeline

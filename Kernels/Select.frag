@@ -10,7 +10,7 @@ uniform vec4 selected; // the prop's identifier as a colour; w: which 24 bits of
 
 layout(location = 0) out vec4 fragmentColor;
 
-// 24 bits of the number of the cell that holds the point at parameter t, from 1 on: 0 is nothing.
+// 24 bits of the number of the cell that holds the point at parameter t, as VTK's meshes have it.
 vec3 CellColor(uint pixel, float t, int part)
 {
   Ray ray = CameraRay(pixel);
@@ -19,7 +19,7 @@ vec3 CellColor(uint pixel, float t, int part)
   uint row = cell.y + uint(cells.y) * cell.z;
   uint high, low, carry;
   umulExtended(row, uint(cells.x), high, low);
-  low = uaddCarry(low, cell.x + 1u, carry);
+  low = uaddCarry(low, cell.x, carry);
   high += carry;
   uint bits = part == 1 ? low & 0xFFFFFFu : low >> 24 | (high & 0xFFFFu) << 8;
   return vec3(bits & 255u, bits >> 8 & 255u, bits >> 16 & 255u) / 255.0;

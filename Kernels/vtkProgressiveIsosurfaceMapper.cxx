@@ -903,6 +903,25 @@ void vtkProgressiveIsosurfaceMapper::EmptyCache()
   this->Impl->CacheToEmpty = true;
 }
 
+// vtkCellPicker and its like would read from a null pointer otherwise.
+vtkDataSet* vtkProgressiveIsosurfaceMapper::GetDataSetInput()
+{
+  vtkDataSet* input = this->GetInput();
+  return input && input->GetPointData()->GetScalars() ? input : nullptr;
+}
+
+double* vtkProgressiveIsosurfaceMapper::GetBounds()
+{
+  if (!this->GetInput())
+  {
+    vtkMath::UninitializeBounds(this->Bounds);
+    return this->Bounds;
+  }
+  this->Update();
+  this->GetInput()->GetBounds(this->Bounds);
+  return this->Bounds;
+}
+
 bool vtkProgressiveIsosurfaceMapper::IsTranslucent(vtkVolumeProperty* property)
 {
   vtkContourValues* values = property->GetIsoSurfaceValues();
@@ -929,6 +948,11 @@ bool vtkProgressiveIsosurfaceMapper::IsPeeled(vtkVolume* volume)
     }
   }
   return false;
+}
+
+bool vtkProgressiveIsosurfaceMapper::WasRenderedIn(vtkRenderer* renderer)
+{
+  return this->Impl->HaveScene && this->Impl->Window && this->Impl->View.first == renderer;
 }
 
 bool vtkProgressiveIsosurfaceMapper::GetHit(int x, int y, double position[3], double& isovalue)

@@ -211,9 +211,14 @@ public:
   bool GetDepthImage(vtkImageData* image);
 
   /**
+   * Was the last Render() for this renderer? GetHit() and GetDepthImage() tell of its picture.
+   */
+  bool WasRenderedIn(vtkRenderer* renderer);
+
+  /**
    * What the last Render() has met at a pixel of its viewport, from the bottom left: the nearest
-   * surface's place in world coordinates, and its isovalue (of a translucent image: of the last
-   * surface that shows). False where nothing was hit, or the pixel lies outside.
+   * surface's place in world coordinates, and its isovalue. False where nothing was hit, or the
+   * pixel lies outside.
    */
   bool GetHit(int x, int y, double position[3], double& isovalue);
 
@@ -244,6 +249,16 @@ public:
    * variable PROGISO_GL_DEBUG is set to 1.
    */
   int GetNumberOfGLErrors();
+
+  ///@{
+  /**
+   * For VTK's pickers: the input where it has samples of points that they can read, or else null,
+   * as for a compressed volume (see vtkIsosurfacePicker). GetInput() always tells the input.
+   */
+  vtkDataSet* GetDataSetInput() override;
+  double* GetBounds() VTK_SIZEHINT(6) override;
+  using vtkVolumeMapper::GetBounds;
+  ///@}
 
   void Render(vtkRenderer* renderer, vtkVolume* volume) override;
   void ReleaseGraphicsResources(vtkWindow* window) override;

@@ -69,6 +69,7 @@ from .vtkProgIsoFilters import (  # noqa: E402
     vtkZFPWriter,
 )
 from .vtkProgIsoKernels import (  # noqa: E402
+    vtkIsosurfacePicker,
     vtkIsosurfaceVolume,
     vtkProgressiveIsosurfaceMapper,
     vtkProgressiveIsosurfaceStatistics,
@@ -99,6 +100,7 @@ __all__ = [
     "vtkCompressedVolumeBuilder",
     "vtkImageZFPCompress",
     "vtkImageZFPDecompress",
+    "vtkIsosurfacePicker",
     "vtkIsosurfaceVolume",
     "vtkProgressiveIsosurfaceMapper",
     "vtkProgressiveIsosurfaceStatistics",

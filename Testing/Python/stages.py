@@ -31,14 +31,13 @@ def paint(volume, surfaces):
     look = volume.GetProperty()
     look.GetIsoSurfaceValues().SetNumberOfContours(len(surfaces))
     values = sorted(surfaces)
-    edges = [(a + b) / 2 for a, b in zip(values, values[1:])]
+    reach = 0.45 * min((b - a for a, b in zip(values, values[1:])), default=1)
     color, opacity = look.GetRGBTransferFunction(), look.GetScalarOpacity()
     color.RemoveAllPoints()
     opacity.RemoveAllPoints()
     for i, value in enumerate(values):
         look.GetIsoSurfaceValues().SetValue(i, value)
-        low, high = edges[i - 1] if i else value - 1, edges[i] if i < len(edges) else value + 1
-        for place in (0.9 * low + 0.1 * high, 0.1 * low + 0.9 * high):
+        for place in (value - reach, value + reach):
             color.AddRGBPoint(place, *surfaces[value][:3])
             opacity.AddPoint(place, surfaces[value][3])
 

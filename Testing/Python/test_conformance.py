@@ -1,5 +1,8 @@
 """The scenes of VTK's tests of its GPU volume mapper, as isosurfaces: our picture beside VTK's. See Testing/conformance.md."""
 
+import pathlib
+import re
+
 import numpy as np
 import progiso
 import pytest
@@ -8,11 +11,13 @@ from layers import blend, capped, crossings_of
 from oracle.caster import Camera
 from stages import BACKGROUND, SIZE, Stage, both, check_like_vtk, check_scene_like_vtk, far_apart, matrix_of, paint, picture_of
 from support import blobs, make_image, reference_volume, vtk_messages
+from vtkmodules.vtkCommonCore import vtkAffineTypeFloat64Array
 from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction, vtkPlane
 from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
 from vtkmodules.vtkRenderingCore import vtkActor, vtkLightKit, vtkPolyDataMapper, vtkRenderer
 from vtkmodules.vtkRenderingOpenGL2 import (
     vtkCameraPass,
+    vtkFramebufferPass,
     vtkLightsPass,
     vtkOpaquePass,
     vtkOpenGLFXAAPass,
@@ -21,6 +26,7 @@ from vtkmodules.vtkRenderingOpenGL2 import (
     vtkRenderStepsPass,
     vtkSequencePass,
     vtkSSAOPass,
+    vtkTextureObject,
     vtkTranslucentPass,
     vtkVolumetricPass,
 )
@@ -128,6 +134,16 @@ def test_grey_transfer_function(image):
     assert np.abs(picture[hit] - 255 * (0.5 + 0.4 * 0.1)).max() <= 1
 
 
+def test_a_narrow_colour_is_not_smeared():
+    """Colours come from the functions themselves, not from a table over the range of values."""
+    values = 1e4 * blobs(SHAPE, 12, waves=2)
+    stage = Stage(True)
+    show(stage, progiso.compress(make_image(values), 24), {999.0: (*RED, 1.0), 1000.0: (*GREEN, 1.0), 1001.0: (*BLUE, 1.0)})
+    picture = stage.picture()[np.isfinite(progiso.depth(stage.mapper))]
+    shares = [(np.abs(picture - 255 * np.array(rgb)).max(axis=1) <= 1).mean() for rgb in (RED, GREEN, BLUE)]
+    assert sum(shares) == 1 and min(shares[0], shares[2]) > 0.2
+
+
 # --- other things in the scene ------------------------------------------------------------------------------------------------
 
 
@@ -158,6 +174,17 @@ def test_opaque_geometry_comes_and_goes(image, radius):
     for actor in balls:
         actor.VisibilityOff()
     assert np.array_equal(stages[0].picture(), bare)
+
+
+@pytest.mark.parametrize("peels", [False, True])
+def test_invisible_geometry_leaves_no_trace(image, peels):
+    """A sphere of opacity 0 across the surface."""
+    plain, stage = Stage(True), Stage(True)
+    for scene in (plain, stage):
+        show(scene, image, NESTED if peels else OPAQUE)
+        scene.peel(peels)
+    stage.renderer.AddActor(ball(11, opacity=0.0))
+    assert far_apart(stage.picture(), plain.picture())[0] == 0
 
 
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
@@ -550,6 +577,21 @@ def test_render_passes(image, surfaces):
 
 
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
+@pytest.mark.parametrize("depths", ["Fixed16", "Fixed24", "Fixed32", "Float32"])
+def test_depth_formats(image, surfaces, depths):
+    """In a framebuffer of a pass, whatever its depths are kept in; VTK's mapper would have to be told."""
+    plain, stage = Stage(True), Stage(True)
+    for scene in (plain, stage):
+        show(scene, image, surfaces)
+        scene.renderer.AddActor(ball(11))
+    frame = vtkFramebufferPass()
+    frame.SetDepthFormat(getattr(vtkTextureObject, depths))
+    frame.SetDelegatePass(passes(vtkLightsPass, vtkOpaquePass, vtkTranslucentPass, vtkVolumetricPass))
+    stage.renderer.SetPass(frame)
+    check_like_vtk(stage.picture(), plain.picture())
+
+
+@pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
 def test_fxaa(image, surfaces):
     def build(stage):
         show(stage, image, surfaces)
@@ -671,6 +713,26 @@ def test_changed_array():
         pictures.append(stages[0].picture())
         check_like_vtk(pictures[-1], stages[1].picture())
     assert np.array_equal(pictures[0], pictures[2]) and not np.array_equal(pictures[0], pictures[1])
+
+
+def test_implicit_array():
+    """Samples that are computed as they are read."""
+    affine = vtkAffineTypeFloat64Array()
+    affine.ConstructBackend(2 / (np.prod(SHAPE) - 1), -1.0)
+    affine.SetNumberOfComponents(1)
+    affine.SetNumberOfTuples(int(np.prod(SHAPE)))
+    affine.SetName("implicit")
+    stages = Stage(True), Stage(True)
+    for stage in stages:
+        several(stage, {"s": np.zeros(SHAPE, np.float32)})
+    explicit = make_image(np.linspace(-1, 1, int(np.prod(SHAPE)), dtype=np.float64).reshape(SHAPE))
+    implicit = make_image(np.zeros(SHAPE))
+    implicit.GetPointData().SetScalars(affine)
+    stages[0].mapper.SetInputData(explicit)
+    stages[1].mapper.SetInputData(implicit)
+    pictures = [stage.picture() for stage in stages]
+    assert np.isfinite(progiso.depth(stages[0].mapper)).mean() > 0.1
+    assert far_apart(*pictures)[0] <= tolerances.VTK_PIXELS
 
 
 def test_component():
@@ -832,3 +894,19 @@ def test_headlight(cube):
         stage.look_at(cube, 1, distance=30, angle=3)
 
     check_scene_like_vtk(build)
+
+
+# --- the table ----------------------------------------------------------------------------------------------------------------------
+
+
+def test_the_table_names_tests_that_are_there():
+    here = pathlib.Path(__file__).resolve().parent
+    table = (here.parent / "conformance.md").read_text()
+    for row in re.findall(r"^\|.*\|$", table, re.MULTILINE):
+        file = "test_conformance.py"
+        for name in re.findall(r"test_\w+(?:\.py)?", row.rsplit("|", 2)[1]):
+            if name.endswith(".py"):
+                file = name
+            else:
+                named = file if f"def {name}(" in (here / file).read_text() else "test_conformance.py"
+                assert f"def {name}(" in (here / named).read_text(), f"{name} is in neither {file} nor {named}"
