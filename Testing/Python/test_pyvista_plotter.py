@@ -9,7 +9,9 @@ import numpy as np
 import progiso
 import pytest
 from support import blobs
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkRenderingUI import vtkGenericRenderWindowInteractor
+from vtkmodules.vtkWebCore import vtkWebApplication
 
 pyvista = pytest.importorskip("pyvista")
 
@@ -271,6 +273,47 @@ def test_screenshots_are_complete(watched, arguments):
     plotter.render()
     assert np.array_equal(picture, plotter.screenshot(return_img=True, **arguments))
     assert not np.array_equal(partial, plotter.image)
+
+
+def test_movies_are_complete(watched):
+    """Every frame; a writer that only keeps them stands for a movie's."""
+    plotter, prop = watched
+    frames = []
+
+    class Writer:
+        append_data = frames.append
+        close = staticmethod(lambda: None)
+
+    plotter.mwriter = Writer()
+    plotter.write_frame()
+    plotter.render_window.SetOffScreenRendering(True)
+    plotter.render()
+    assert len(frames) == 1 and np.array_equal(frames[0], plotter.image)
+
+
+def test_images_for_browsers_are_complete(watched, tmp_path):
+    """As trame, which pyvista's server backend in Jupyter is, asks VTK for them: an off-screen window's JPEG."""
+    plotter, prop = watched
+    plotter.render_window.SetOffScreenRendering(True)
+    prop.GetMapper().EmptyCache()
+    plotter.camera.azimuth = 30
+    application = vtkWebApplication()
+    application.SetImageEncoding(vtkWebApplication.ENCODING_NONE)
+    jpeg = tmp_path / "image.jpg"
+    jpeg.write_bytes(vtk_to_numpy(application.StillRender(plotter.render_window, 100)).tobytes())
+    sent = pyvista.read(jpeg).active_scalars.reshape(SIZE[1], SIZE[0], 3)[::-1].astype(int)
+    shown = plotter.screenshot(return_img=True)
+    assert (shown > 100).any() and np.abs(sent - shown).mean() < 3
+
+
+def test_vector_graphics_hold_a_picture(plotter, ball, tmp_path):
+    files = [tmp_path / "empty.svg", tmp_path / "scene.svg"]
+    for file in files:
+        plotter.show(auto_close=False)
+        plotter.save_graphic(str(file))
+        plotter.progiso.add_isosurface(ball, 10)
+    empty, scene = (file.read_text(errors="ignore").split("<image")[1:] for file in files)
+    assert len(scene) == 1 and len(scene[0]) > 2 * len("".join(empty))
 
 
 def test_depth_images_are_complete(watched):
