@@ -107,7 +107,8 @@ def test_render_several_isovalues(folder):
     """The outer surface is seen first, in its colour; more surfaces cover more pixels."""
     arguments = ("packed.vti", "--size", "200x150", "--orbit", "1/5", "--background", "black")
     inner, _ = render(folder, *arguments, "--color", "#ff0000")
-    both, _ = render(folder, *arguments, "--isovalue", -0.3, "--color", "#ff0000", "--color", "#00ff00", "--opacity", 1, "--opacity", 0.5)
+    look = ("--color", "#ff0000", "--color", "#00ff00", "--opacity", 1, "--opacity", 0.5)
+    both, _ = render(folder, *arguments, "--isovalue", -0.3, *look)
     assert np.isfinite(both).sum() > np.isfinite(inner).sum() and np.isfinite(both[np.isfinite(inner)]).all()
     pixels = read_png(folder / "out.png")
     front = both < inner - 0.1

@@ -77,7 +77,9 @@ def test_the_theme_gives_the_colour_and_the_light(ball):
 
 
 def test_cmap_colours_by_isovalue(plotter, ball):
-    prop = plotter.progiso.add_isosurface(ball, 12, cmap=["red", "lime", "blue"], clim=[0, 12], lighting=False, show_scalar_bar=False)
+    prop = plotter.progiso.add_isosurface(
+        ball, 12, cmap=["red", "lime", "blue"], clim=[0, 12], lighting=False, show_scalar_bar=False
+    )
     assert colour(plotter) == (0, 0, 1)
     isovalues(prop).SetValue(0, 6)
     assert colour(plotter) == (0, 1, 0)
