@@ -108,7 +108,8 @@ def add_isosurface(
     reset_camera : bool, optional
         Whether the camera is reset to see everything; by default when it was not set yet.
     pickable : bool, default: True
-        Whether the prop can be picked, by VTK's hardware picker.
+        Whether pyvista's hardware picker finds the prop. ``plotter.progiso.surface_at`` tells the
+        place.
     render : bool, default: True
         Whether to render at once if the plotter is showing.
     user_matrix : TransformLike, optional
