@@ -1,6 +1,6 @@
 // What a pixel's ray has met, in sections of a word a pixel: the hit's key; its depth, the parameter t, of a translucent
-// image that of the first hit; with several isovalues the number of the one that was hit, and in the upper half that of the first hit; where opaque geometry hides what
-// is behind it, the window's depth.
+// image that of the first hit; with several isovalues the number of the one that was hit, and in the upper half that of
+// the first hit; where opaque geometry hides what is behind it, the window's depth.
 
 struct Hit
 {
