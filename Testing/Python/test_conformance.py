@@ -93,7 +93,7 @@ def wall(camera, share, color=(0.1, 0.9, 0.9), opacity=1.0):
     return actor_of(source, color, opacity)
 
 
-# --- isovalues, colours, opacities --------------------------------------------------------------------------------------------
+# --- isovalues, colours, opacities -------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -144,7 +144,7 @@ def test_a_narrow_colour_is_not_smeared():
     assert sum(shares) == 1 and min(shares[0], shares[2]) > 0.2
 
 
-# --- other things in the scene ------------------------------------------------------------------------------------------------
+# --- other things in the scene -----------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
@@ -233,7 +233,7 @@ def test_overlapping_opaque_volumes(image):
     assert np.array_equal(reds[clear], (depths[1] < depths[0])[clear])
 
 
-# --- clipping and cropping ------------------------------------------------------------------------------------------------------
+# --- clipping and cropping ---------------------------------------------------------------------------------------------------
 
 TURNED = np.array([[0.8, -0.6, 0, 3], [0.6, 0.8, 0, -2], [0, 0, 1, 1], [0, 0, 0, 1.0]])
 STRETCHED = np.diag([1.5, 0.7, 1.2, 1.0])
@@ -332,7 +332,7 @@ def test_cropping_and_clipping_of_a_moved_volume(image):
     assert (np.abs(picture - model).max(axis=2) > tolerances.LAYERS_LEVELS).mean() <= tolerances.LAYERS_PIXELS
 
 
-# --- where the volume is, and the camera ----------------------------------------------------------------------------------------
+# --- where the volume is, and the camera -------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
@@ -386,7 +386,8 @@ def test_from_perspective_to_parallel(image):
 def test_camera_inside(spacing, matrix, angle, surfaces):
     compressed = progiso.compress(make_image(blobs(SHAPE, 12, waves=2), spacing=spacing), 16)
     place = np.append(CENTRE * spacing, 1)
-    eye, focus = ((np.eye(4) if matrix is None else matrix) @ (place + [*np.array(d) * spacing, 0]) for d in ((2, 3, 1), (9, 6, -4)))
+    moved = np.eye(4) if matrix is None else matrix
+    eye, focus = (moved @ (place + [*np.array(d) * spacing, 0]) for d in ((2, 3, 1), (9, 6, -4)))
 
     def build(stage):
         stage.add(compressed, surfaces, matrix=matrix)
@@ -422,7 +423,7 @@ def test_model_transform(image):
     assert not np.array_equal(picture, first)
 
 
-# --- windows ------------------------------------------------------------------------------------------------------------------
+# --- windows -----------------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
@@ -506,7 +507,7 @@ def test_stereo(cube, surfaces, kind):
     assert far_apart(mono.picture(), pictures[0])[0] > 1.5 * tolerances.VTK_PIXELS
 
 
-# --- passes ---------------------------------------------------------------------------------------------------------------------
+# --- passes ------------------------------------------------------------------------------------------------------------------
 
 
 def test_depth_peeling(image):
@@ -655,7 +656,7 @@ def test_translucent_surfaces_occlude_nothing(image):
     assert far_apart(stage.picture(), plain)[0] < 0.2
 
 
-# --- data -------------------------------------------------------------------------------------------------------------------------
+# --- data --------------------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
@@ -778,7 +779,7 @@ def test_values_change_in_place():
     check_like_vtk(stage.picture(), several_of_vtk(blobs(SHAPE, 5, waves=2)))
 
 
-# --- light --------------------------------------------------------------------------------------------------------------------------
+# --- light -------------------------------------------------------------------------------------------------------------------
 
 
 def shaded(stage, image, surfaces=OPAQUE, specular=0.0, **settings):
@@ -896,7 +897,7 @@ def test_headlight(cube):
     check_scene_like_vtk(build)
 
 
-# --- the table ----------------------------------------------------------------------------------------------------------------------
+# --- the table ---------------------------------------------------------------------------------------------------------------
 
 
 def test_the_table_names_tests_that_are_there():

@@ -99,7 +99,7 @@ def test_layers_end_at_opaque_geometry(field):
     assert off <= tolerances.LAYERS_PIXELS
 
 
-# --- the division of the work ---------------------------------------------------------------------------------------------------
+# --- the division of the work ------------------------------------------------------------------------------------------------
 
 
 def least_budget(image, surfaces, lit):
@@ -114,7 +114,7 @@ def least_budget(image, surfaces, lit):
 
 @pytest.fixture(scope="module", params=[False, True], ids=["unlit", "lit"])
 def whole(request):
-    """A volume larger than the smallest cache and buffer, its surfaces, whether they are lit, and depth and picture of one pass."""
+    """A volume larger than the smallest cache and buffer, whether it is lit, and picture and depth of one pass."""
     image = progiso.compress(make_image(blobs((60, 64, 56), 3, waves=5)), 32)
     stage = Stage(True)
     show(stage, image, NESTED).GetProperty().SetShade(request.param)

@@ -22,7 +22,7 @@ def decoded(stage):
     return sum(row["decoded_blocks"] for row in progiso.statistics(stage.mapper, stage.renderer)["passes"])
 
 
-# --- decoded blocks ------------------------------------------------------------------------------------------------------------
+# --- decoded blocks ----------------------------------------------------------------------------------------------------------
 
 LOOKS = {
     "colour": lambda stage: paint(stage.volumes[0], {value: (*RED, look[3]) for value, look in stage.surfaces.items()}),
@@ -84,7 +84,7 @@ def test_a_new_isovalue_decodes_only_what_it_adds(image):
     assert decoded(stage) == first
 
 
-# --- OpenGL's objects -----------------------------------------------------------------------------------------------------------
+# --- OpenGL's objects --------------------------------------------------------------------------------------------------------
 
 KINDS = ["Buffer", "Texture", "Program", "Shader", "Query", "Framebuffer", "Renderbuffer", "VertexArray"]
 
@@ -181,7 +181,7 @@ def test_other_things_in_the_window_are_left_as_they_were(image):
     assert np.array_equal(picture_of(stage.window), picture_of(plain.window))
 
 
-# --- copies and texts -----------------------------------------------------------------------------------------------------------
+# --- copies and texts --------------------------------------------------------------------------------------------------------
 
 
 def test_a_volume_is_copied(image):
@@ -217,7 +217,7 @@ def test_everything_prints(image):
     assert "123456789" in text and "vtkIsosurfaceVolume" in str(volume)
 
 
-# --- limits -----------------------------------------------------------------------------------------------------------------------
+# --- limits ------------------------------------------------------------------------------------------------------------------
 
 
 def complaints(stage):

@@ -11,7 +11,14 @@ from stages import SIZE, Stage
 from support import blobs, make_image, reference_volume
 from test_conformance import GREEN, NESTED, OPAQUE, RED, SHAPE, TURNED, ball, show, wall
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPlane, vtkSelectionNode
-from vtkmodules.vtkRenderingCore import vtkCellPicker, vtkHardwareSelector, vtkPointPicker, vtkPropPicker, vtkRenderer, vtkWorldPointPicker
+from vtkmodules.vtkRenderingCore import (
+    vtkCellPicker,
+    vtkHardwareSelector,
+    vtkPointPicker,
+    vtkPropPicker,
+    vtkRenderer,
+    vtkWorldPointPicker,
+)
 from vtkmodules.vtkRenderingVolume import vtkVolumePicker
 
 PIXELS = [(x, y) for x in range(3, SIZE[0], 13) for y in range(2, SIZE[1], 11)]
@@ -182,7 +189,7 @@ def test_picking_is_told_of(image):
     assert events == ["StartPickEvent", "EndPickEvent"]
 
 
-# --- VTK's own ------------------------------------------------------------------------------------------------------------------
+# --- VTK's own ---------------------------------------------------------------------------------------------------------------
 
 
 def select(stage, association, area):
