@@ -319,11 +319,10 @@ constexpr std::size_t ExactBegins = offsetof(SceneBlock, FirstDrawn);
 }
 
 SceneBlock TranslateScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMapper* mapper,
-  vtkImageData* image, vtkCompressedVolume* compressed)
+  vtkImageData* image, vtkCompressedVolume* compressed, const int viewport[4])
 {
   SceneBlock scene;
-  renderer->GetTiledSizeAndOrigin(
-    &scene.Image[0], &scene.Image[1], &scene.Image[2], &scene.Image[3]);
+  std::copy(viewport, viewport + 4, scene.Image);
   vtkCamera* camera = renderer->GetActiveCamera();
   vtkMatrix4x4* projection =
     camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1, 1);

@@ -15,10 +15,11 @@ class vtkRenderer;
 class vtkVolume;
 class vtkVolumeMapper;
 
-/// Rays, image, isovalues, clipping, cropping, lights and material of a volume seen by a renderer's
-/// camera. Samples, Blocks, CoarseCells and Cache are the pipeline's own business.
+/// `viewport`: width, height and origin of what is drawn into. Rays, image, isovalues, clipping,
+/// cropping, lights and material of a volume seen by a renderer's camera. Samples, Blocks,
+/// CoarseCells and Cache are the pipeline's own business.
 SceneBlock TranslateScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMapper* mapper,
-  vtkImageData* image, vtkCompressedVolume* compressed);
+  vtkImageData* image, vtkCompressedVolume* compressed, const int viewport[4]);
 
 /// Do two scenes have the same hits? Cameras are compared with a relative tolerance of 1e-7:
 /// vtkWindowToImageFilter perturbs the view angle by rounding.

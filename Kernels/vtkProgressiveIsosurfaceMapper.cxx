@@ -499,8 +499,12 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdatePalette(vtkVolumeProperty*
 bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(
   vtkRenderer* renderer, vtkVolume* volume)
 {
-  SceneBlock scene =
-    TranslateScene(renderer, volume, this->Owner, this->Values.Image, this->Values.Volume);
+  // not the renderer's size: a pass may draw into a framebuffer of its own, larger than the window
+  int place[4];
+  this->Window->GetState()->vtkglGetIntegerv(GL_VIEWPORT, place);
+  const int viewport[4] = { place[2], place[3], place[0], place[1] };
+  SceneBlock scene = TranslateScene(
+    renderer, volume, this->Owner, this->Values.Image, this->Values.Volume, viewport);
   const bool likeMeshes = this->Owner->LitLikeMeshes && scene.Lighting[3] != 0;
   scene.Lighting[3] = likeMeshes ? SceneBlock::LitLikeMeshes : scene.Lighting[3];
   vtkCamera* camera = renderer->GetActiveCamera();

@@ -301,6 +301,11 @@ def _save(image, path, appended=False):
         progiso.save(image, path, progress, appended)
 
 
+def _remark(text):
+    """Say something beside the results."""
+    print(f"progiso: note: {text}", file=sys.stderr)
+
+
 def _compress(parsed):
     check_output(parsed.out, (".vti",) if parsed.appended else COMPRESSED_SUFFIXES)
     source = getattr(parsed, "in")
@@ -309,8 +314,11 @@ def _compress(parsed):
             source, parsed.rate, parsed.array, parsed.component, parsed.threads, progress
         )
     _save(volume, parsed.out, parsed.appended)
+    if parsed.out.suffix.lower() == ".zfp":
+        _remark("a .zfp file keeps the samples alone: no origin, no spacing, no array's name")
     about = progiso.describe(volume)
-    print(f"{parsed.out}: {about['stream_bytes']} bytes, {about['rate']:g} bits per sample")
+    stream, rate = about["stream_bytes"], about["rate"]
+    print(f"{parsed.out}: {stream} bytes of compressed samples, {rate:g} bits per sample")
 
 
 def _decompress(parsed):
@@ -394,12 +402,16 @@ def _contour(parsed):
     with progress_bar(f"Writing {parsed.out.name}") as progress:
         progiso.save_surface(surface, parsed.out, progress)
     points, triangles = surface.GetNumberOfPoints(), surface.GetNumberOfPolys()
+    if points == 0:
+        _remark("nowhere does the volume cross the isovalue: `progiso info` tells the values' range")
     print(f"{parsed.out}: {points} points, {triangles} triangles")
 
 
 def _render(parsed):
-    for path in filter(None, (parsed.output, parsed.depth, parsed.stats)):
+    for path in filter(None, (parsed.depth, parsed.stats)):
         check_output(path)
+    if parsed.output is not None:
+        check_output(parsed.output, (".png",))
     image = _read(parsed)
     camera = None
     if parsed.orbit is None:
@@ -447,8 +459,11 @@ def _print_summary(result):
     about = result.statistics
     width, height = about["size"]
     hits = int(np.isfinite(result.depth).sum())
+    passes = len(about["passes"])
+    if hits == 0:
+        _remark("no surface is seen: `progiso info` tells the values' range")
     print(
-        f"{width}x{height}, {len(about['passes'])} passes, {about['total_ms']:.1f} ms, "
+        f"{width}x{height}, {passes} {'pass' if passes == 1 else 'passes'}, {about['total_ms']:.1f} ms, "
         f"{hits} pixels hit, {about['memory']['total'] / 2**20:.1f} MiB of GPU memory"
         + ("" if about["converged"] else ", NOT COMPLETE")
     )

@@ -59,9 +59,7 @@ def read(path, dimensions=None, rate=None, progress=None):
     >>> progiso.read(fetch("sphere", size=16)).GetDimensions()
     (16, 16, 16)
     """
-    path = Path(path)
-    if not path.is_file():
-        raise FileNotFoundError(f"there is no file '{path}'")
+    path = _existing(path)
     suffix = suffix_of(path)
     if suffix == ".zfp":
         return _read_zfp(path, dimensions, rate)
@@ -112,9 +110,7 @@ def compress_file(path, rate=8.0, array=None, component=0, threads=0, progress=N
     >>> progiso.describe(volume)["samples"]
     [32, 32, 32]
     """
-    path = Path(path)
-    if not path.is_file():
-        raise FileNotFoundError(f"there is no file '{path}'")
+    path = _existing(path)
     if not 0 < rate <= 32:
         raise ValueError(f"rate must be in (0, 32] bits per sample, got {rate:g}")
     source = _SLABS.get(suffix_of(path), lambda path: None)(path)
@@ -128,6 +124,16 @@ def compress_file(path, rate=8.0, array=None, component=0, threads=0, progress=N
     )
     source.place(volume)
     return volume
+
+
+def _existing(path):
+    """The path of a file that is there."""
+    path = Path(path)
+    if path.is_dir():
+        raise IsADirectoryError(f"'{path}' is a folder: name a file")
+    if not path.is_file():
+        raise FileNotFoundError(f"there is no file '{path}'")
+    return path
 
 
 def _part(progress, start):
@@ -178,10 +184,12 @@ def _read_other(path):
     except (ImportError, ValueError) as error:
         with captured_output():  # readers that find nothing of theirs say so
             reader = vtkImageReader2Factory.CreateImageReader2(str(path))
-        if reader is not None:
+        # one of them takes any file for its own, and crashes on it
+        if reader is not None and suffix_of(path) in reader.GetFileExtensions().lower().split():
             return _read_with(reader, path)
         known = ", ".join((*_VTK_READERS, *_READERS, ".zfp"))
-        raise ValueError(f"do not know how to read '{path}' (known: {known}); {error}") from None
+        more = "; with nibabel also what that reads" if isinstance(error, ImportError) else ""
+        raise ValueError(f"do not know how to read '{path}' (known: {known}{more})") from None
 
 
 def _checked(image, path):

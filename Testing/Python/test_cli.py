@@ -17,15 +17,15 @@ from support import blobs, make_image, marschner_lobb, reference_values, referen
 from test_statistics import check_memory
 
 
+def run(folder, *arguments):
+    """Run a command in a folder."""
+    command = [sys.executable, "-m", "progiso", *map(str, arguments)]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, env=os.environ)
+
+
 def call(folder, *arguments, succeeds=True):
     """Run a command in a folder; return what it prints."""
-    done = subprocess.run(
-        [sys.executable, "-m", "progiso", *map(str, arguments)],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        env=os.environ,
-    )
+    done = run(folder, *arguments)
     assert (done.returncode == 0) == succeeds, done.stdout + done.stderr
     return done.stdout if succeeds else done.stderr
 
@@ -77,6 +77,18 @@ def test_zfp_files(folder):
         np.fromfile(folder / "raw", np.float32).reshape(40, 36, 44),
         reference_values(progiso.read(folder / "packed.vti")),
     )
+
+
+def test_notes(folder):
+    """What a user may not expect is said, on the side, and does not fail."""
+    for arguments, words in (
+        (("compress", "plain.vti", "noted.zfp"), "no spacing"),
+        (("contour", "packed.vti", "noted.vtp", "--isovalue", 1e6), "range"),
+        (("render", "packed.vti", "--isovalue", 1e6, "--size", "64x48"), "range"),
+    ):
+        done = run(folder, *arguments)
+        assert done.returncode == 0, done.stderr
+        assert "note: " in done.stderr and words in done.stderr
 
 
 def render(folder, file, *arguments):
@@ -199,6 +211,9 @@ FAILURES = {
     "isovalue": (["render", "packed.vti", "--isovalue", "nan"], "isovalue"),
     "opacities": (["render", "packed.vti", "--isovalue", "0", "--opacity", "1", "--opacity", "0.5"], "opacity: 2 for 1"),
     "colours": (["render", "packed.vti", "--isovalue", "0", "--color", "red", "--color", "tan"], "color: 2 for 1"),
+    "a text": (["info", "text.txt"], "text.txt"),
+    "a folder": (["info", "."], "folder"),
+    "a picture's suffix": (["render", "packed.vti", "--isovalue", "0", "--output", "x.jpg"], ".png"),
     "output": (["compress", "plain.vti", "nowhere/x.vti"], "nowhere"),
     "appended": (["compress", "plain.vti", "x.zfp", "--appended"], "x.zfp"),
 }
@@ -209,6 +224,7 @@ def test_errors_are_one_line(folder, case):
     arguments, word = FAILURES[case]
     (folder / "broken.vti").write_text("<VTKFile")
     (folder / "some.xyz").write_text("?")
+    (folder / "text.txt").write_text("What VTK's reader of .hdr pictures takes for its own.\n" * 50)
     lines = call(folder, *arguments, succeeds=False).strip().splitlines()
     assert len(lines) == 1, lines
     assert "error" in lines[0] and word in lines[0]

@@ -25,6 +25,7 @@ from vtkmodules.vtkRenderingOpenGL2 import (
     vtkRenderPassCollection,
     vtkRenderStepsPass,
     vtkSequencePass,
+    vtkSSAAPass,
     vtkSSAOPass,
     vtkTextureObject,
     vtkTranslucentPass,
@@ -602,6 +603,21 @@ def test_fxaa(image, surfaces):
         stage.renderer.SetPass(smooth)
 
     check_scene_like_vtk(build)
+
+
+@pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
+def test_supersampling(image, surfaces):
+    """The pass draws into a framebuffer larger than the window; VTK's mapper shows no isosurface in it."""
+    plain, stage = Stage(True), Stage(True)
+    for scene in (plain, stage):
+        show(scene, image, surfaces)
+        scene.renderer.AddActor(ball(11))
+    fine = vtkSSAAPass()
+    fine.SetDelegatePass(vtkRenderStepsPass())
+    stage.renderer.SetPass(fine)
+    apart = np.abs(stage.picture() - plain.picture()).max(axis=2)
+    assert 0.002 < (apart > 20).mean() < 0.1, "edges are blended"
+    assert (apart <= 2).mean() > 0.75, "the rest is the same"
 
 
 def occluded(stage):
