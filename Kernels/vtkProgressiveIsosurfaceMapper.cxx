@@ -174,6 +174,7 @@ public:
   vtkNew<vtkMatrix4x4> EyeToWorld;        // of Scene
   std::pair<int, vtkMTimeType> Obstacles; // of Scene: how many props, and when they last changed
   std::pair<vtkRenderer*, int> View;      // renderer and eye of the last render
+  int ViewSize[2] = { 0, 0 };             // of its viewport
   int RendersOfView = AloneAgain;         // since another view was rendered
   bool CacheToEmpty = false;              // at the next render, when the context is current
   double TotalMilliseconds = 0.0;
@@ -502,6 +503,8 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(
   // not the renderer's size: a pass may draw into a framebuffer of its own, larger than the window
   int place[4];
   this->Window->GetState()->vtkglGetIntegerv(GL_VIEWPORT, place);
+  int origin[2];
+  renderer->GetTiledSizeAndOrigin(&this->ViewSize[0], &this->ViewSize[1], &origin[0], &origin[1]);
   const int viewport[4] = { place[2], place[3], place[0], place[1] };
   SceneBlock scene = TranslateScene(
     renderer, volume, this->Owner, this->Values.Image, this->Values.Volume, viewport);
@@ -963,11 +966,14 @@ bool vtkProgressiveIsosurfaceMapper::GetHit(int x, int y, double position[3], do
 {
   Internals* impl = this->Impl.get();
   const SceneBlock& scene = impl->Pipeline.GetScene();
-  if (!impl->HaveScene || !impl->Window || x < 0 || y < 0 || x >= scene.Image[0] ||
-    y >= scene.Image[1])
+  const int* size = impl->ViewSize;
+  if (!impl->HaveScene || !impl->Window || x < 0 || y < 0 || x >= size[0] || y >= size[1])
   {
     return false;
   }
+  // a pass may have drawn a larger image than the viewport
+  x = static_cast<int>((x + 0.5) * scene.Image[0] / size[0]);
+  y = static_cast<int>((y + 0.5) * scene.Image[1] / size[1]);
   impl->Window->MakeCurrent();
   const PixelHit hit = impl->Pipeline.ReadHit(static_cast<std::int64_t>(y) * scene.Image[0] + x);
   if (hit.Key == PixelHit().Key)

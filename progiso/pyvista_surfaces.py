@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from numbers import Real
+from pathlib import Path
 
 import numpy as np
 import pyvista
@@ -276,7 +277,10 @@ def _compressed(volume, rate, scalars, component):
             raise TypeError(f"an array must have 3 dimensions, this one has {volume.ndim}")
         volume = pyvista.wrap(volume)
     if not getattr(volume, "IsA", lambda _: False)("vtkImageData"):
-        raise TypeError(f"expected pyvista.ImageData or an array, got {type(volume).__name__}")
+        hint = ": progiso.read makes an image of a file" if isinstance(volume, (str, Path)) else ""
+        raise TypeError(
+            f"expected pyvista.ImageData or an array, got {type(volume).__name__}{hint}"
+        )
     return as_compressed(volume, rate, scalars, component)
 
 

@@ -11,7 +11,7 @@ from layers import blend, capped, crossings_of
 from oracle.caster import Camera
 from stages import BACKGROUND, SIZE, Stage, both, check_like_vtk, check_scene_like_vtk, far_apart, matrix_of, paint, picture_of
 from support import blobs, make_image, reference_volume, vtk_messages
-from vtkmodules.vtkCommonCore import vtkAffineTypeFloat64Array
+from vtkmodules.vtkCommonCore import reference, vtkAffineTypeFloat64Array
 from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction, vtkPlane
 from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
 from vtkmodules.vtkRenderingCore import vtkActor, vtkLightKit, vtkPolyDataMapper, vtkRenderer
@@ -618,6 +618,12 @@ def test_supersampling(image, surfaces):
     apart = np.abs(stage.picture() - plain.picture()).max(axis=2)
     assert 0.002 < (apart > 20).mean() < 0.1, "edges are blended"
     assert (apart <= 2).mean() > 0.75, "the rest is the same"
+    found = []
+    for scene in (plain, stage):
+        position, isovalue = [0.0] * 3, reference(0.0)
+        assert scene.mapper.GetHit(80, 64, position, isovalue)
+        found.append((*position, isovalue.get()))
+    assert found[0] == pytest.approx(found[1], abs=0.5)
 
 
 def occluded(stage):

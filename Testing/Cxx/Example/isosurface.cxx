@@ -97,5 +97,5 @@ int main(int argc, char* argv[])
   std::cout << writer->GetFileName() << ": "
             << (mapper->GetConverged() ? "converged after " : "did not converge in ")
             << mapper->GetStatistics()->GetNumberOfPasses() << " passes" << std::endl;
-  return mapper->GetConverged() ? 0 : 1;
+  return mapper->GetConverged() && writer->GetErrorCode() == 0 ? 0 : 1;
 }
