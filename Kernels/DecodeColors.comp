@@ -1,5 +1,5 @@
-// Decompression of the volume that gives the colours: the blocks that DecodeBlocks.comp has just decoded of the other, into
-// the same slots; or, where there is no cache, all blocks.
+// Decompression of the volume that gives the colours: the blocks that DecodeBlocks.comp has just decoded of the other,
+// into the same slots; or, where there is no cache, all blocks.
 // In: CacheRequests, CacheMap, Macrocells, Payload. Out: CacheValues.
 
 #define CACHE_BY_ROWS

@@ -1,9 +1,8 @@
 // The normals of the hits that have come in (part of section 3.7), once a hit. Of a translucent image the hit is lit at
 // once and blended with what lies before it, and its ray goes on. Where another volume gives the colours, its value at
-// the hit is found as well. Central differences reach a voxel beyond
-// the cell, also to the -x, -y and -z sides, where no ray may have asked for a block yet: such a hit asks, and waits.
-// In: Hits, Rays, CacheMap, CacheValues. Out: Normals or Layers, Rays, CacheRequests, CacheMap, Macrocells,
-// Control.
+// the hit is found as well. Central differences reach a voxel beyond the cell, also to the -x, -y and -z sides, where no
+// ray may have asked for a block yet: such a hit asks, and waits.
+// In: Hits, Rays, CacheMap, CacheValues. Out: Hits, Normals or Layers, Rays, CacheRequests, CacheMap, Macrocells, Control.
 
 #define GROUP 64u
 

@@ -1,7 +1,7 @@
-// What a pixel's ray has met, in sections of a word a pixel: the hit's key; its depth, the parameter t, of a translucent
-// image that of the first hit; with several isovalues the number of the one that was hit, and in the upper half that of the
-// first hit; where another volume gives the colours, its value; where opaque geometry hides what is behind it, the
-// window's depth.
+// What a pixel's ray has met, in sections of a word a pixel: the hit's key; its depth, the parameter t, of a
+// translucent image that of the first hit; with several isovalues the number of the one that was hit, and in the upper
+// half that of the first hit; where another volume gives the colours, its value; where opaque geometry hides what is
+// behind it, the window's depth.
 
 struct Hit
 {

@@ -403,7 +403,7 @@ def _contour(parsed):
         progiso.save_surface(surface, parsed.out, progress)
     points, triangles = surface.GetNumberOfPoints(), surface.GetNumberOfPolys()
     if points == 0:
-        _remark("nowhere does the volume cross the isovalue: `progiso info` tells the values' range")
+        _remark("the volume has no such values: `progiso info` tells their range")
     print(f"{parsed.out}: {points} points, {triangles} triangles")
 
 
@@ -459,11 +459,12 @@ def _print_summary(result):
     about = result.statistics
     width, height = about["size"]
     hits = int(np.isfinite(result.depth).sum())
-    passes = len(about["passes"])
+    count = len(about["passes"])
+    passes = "1 pass" if count == 1 else f"{count} passes"
     if hits == 0:
         _remark("no surface is seen: `progiso info` tells the values' range")
     print(
-        f"{width}x{height}, {passes} {'pass' if passes == 1 else 'passes'}, {about['total_ms']:.1f} ms, "
+        f"{width}x{height}, {passes}, {about['total_ms']:.1f} ms, "
         f"{hits} pixels hit, {about['memory']['total'] / 2**20:.1f} MiB of GPU memory"
         + ("" if about["converged"] else ", NOT COMPLETE")
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from numbers import Real
 from pathlib import Path
 
@@ -166,6 +167,7 @@ def add_isosurface(
         specular_power=specular_power,
         opacity=opacity,
     )
+    _warn_of_nothing(prop, image)
     if user_matrix is not None:
         prop.SetUserMatrix(pyvista.vtkmatrix_from_array(_matrix(user_matrix)))
     complete_captures(plotter)
@@ -174,6 +176,19 @@ def add_isosurface(
     if table is not None and shown:
         _add_scalar_bar(plotter, table, describe(image)["array"], scalar_bar_args)
     return prop
+
+
+def _warn_of_nothing(prop, image):
+    """Say so where no isovalue lies among the volume's values: the picture stays empty."""
+    low, high = describe(image)["range"]
+    isovalues = prop.GetProperty().GetIsoSurfaceValues()
+    given = [isovalues.GetValue(i) for i in range(isovalues.GetNumberOfContours())]
+    if not any(low <= value <= high for value in given):
+        text = ", ".join(f"{value:g}" for value in given)
+        warnings.warn(
+            f"isovalue {text} is outside the volume's values, {low:g} to {high:g}: nothing shows",
+            stacklevel=4,
+        )
 
 
 def add_isosurface_slider(plotter, volume, rng=None, value=None, **kwargs):

@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 import sys
+import warnings
 
 import numpy as np
 import progiso
@@ -373,3 +374,11 @@ def test_passes_show_on_screen(lacking, tmp_path):
     fractions = [float(word) for word in shown.stdout.split()]
     assert len(set(fractions)) > 3 and fractions[0] < 1 and fractions[-1] == 1, shown.stdout + shown.stderr
     assert fractions == sorted(fractions)
+
+
+def test_nothing_to_see_is_said(plotter, ball):
+    with pytest.warns(UserWarning, match="isovalue 1000 is outside"):
+        plotter.progiso.add_isosurface(ball, 1000)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        plotter.progiso.add_isosurface(ball, [8, 1000], color="white")
