@@ -1,5 +1,5 @@
-// Decompression (section 3.5), one invocation a block: of the blocks that rays have asked for, into free cache slots;
-// or, where there is no cache, of the whole volume.
+// Decompression (section 3.5): of the blocks that rays have asked for, into free cache slots; or, where there is no
+// cache, of the whole volume.
 // In: CacheRequests, CacheFreeSlots, Payload. Out: CacheValues, CacheMap, Macrocells, Control.
 
 #define CACHE_BY_ROWS
@@ -13,11 +13,6 @@
 layout(local_size_x = 32) in;
 
 #ifdef HAS_CACHE_MAP
-uint NumberOfBlocks()
-{
-  return min(control.Requests, scene.Cache.x);
-}
-
 // The block's bit is cleared for the next pass; it gets the slot whose turn it is, and its place on the map.
 uint SlotFor(uint i, uint block)
 {
@@ -44,47 +39,15 @@ uint SlotFor(uint i, uint block)
   return slot;
 }
 #else
-uint NumberOfBlocks()
-{
-  return uint(scene.Blocks.w);
-}
-
 uint SlotFor(uint i, uint block)
 {
   return block;
 }
 #endif
 
-uint BlockAt(uint i)
+uint FirstSlot()
 {
-#ifdef HAS_CACHE_MAP
-  return cacheRequests[i];
-#else
-  return i;
-#endif
+  return 0u;
 }
 
-void StoreBlock(uint slot, DecodedBlock decoded)
-{
-#define STORE_ROW(r) cacheRows[16u * slot + uint(r)] = decoded.Row[r];
-  FOR_ROWS(STORE_ROW)
-}
-
-void main()
-{
-  uint lane = gl_LocalInvocationIndex;
-  uint number = NumberOfBlocks();
-  uint stride = gl_NumWorkGroups.x * gl_NumWorkGroups.y * ZFP_LANES;
-  for (uint i = FoldedGroup() * ZFP_LANES + lane; i < number; i += stride)
-  {
-    uint block = BlockAt(i);
-    if (InSegment(block))
-    {
-      uint slot = SlotFor(i, block);
-      if (slot != NONE)
-      {
-        StoreBlock(slot, DecodeBlock(block, lane));
-      }
-    }
-  }
-}
+#include "DecodeListed.glsl"

@@ -14,32 +14,16 @@
 
 layout(local_size_x = 32) in;
 
-void StoreColors(uint slot, DecodedBlock decoded)
+// None where the request was refused.
+uint SlotFor(uint i, uint block)
 {
-#define STORE_COLORS(r) cacheRows[16u * (NumberOfSlots() + slot) + uint(r)] = decoded.Row[r];
-  FOR_ROWS(STORE_COLORS)
+  return SlotOf(BlockCoordinates(block));
 }
 
-void main()
+// Behind all slots of the volume that is drawn.
+uint FirstSlot()
 {
-  uint lane = gl_LocalInvocationIndex;
-#ifdef HAS_CACHE_MAP
-  uint number = min(control.Requests, scene.Cache.x);
-#else
-  uint number = uint(scene.Blocks.w);
-#endif
-  uint stride = gl_NumWorkGroups.x * gl_NumWorkGroups.y * ZFP_LANES;
-  for (uint i = FoldedGroup() * ZFP_LANES + lane; i < number; i += stride)
-  {
-#ifdef HAS_CACHE_MAP
-    uint block = cacheRequests[i];
-#else
-    uint block = i;
-#endif
-    uint slot = InSegment(block) ? SlotOf(BlockCoordinates(block)) : NONE; // none where the request was refused
-    if (slot != NONE)
-    {
-      StoreColors(slot, DecodeBlock(block, lane));
-    }
-  }
+  return NumberOfSlots();
 }
+
+#include "DecodeListed.glsl"

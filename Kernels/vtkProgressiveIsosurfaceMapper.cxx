@@ -122,6 +122,39 @@ void CopyBlocks(
     }
   }
 }
+
+// What a picture of the viewport is drawn with, until it goes out of scope. Blended colours have
+// been multiplied by their opacities and leave the depths as they are.
+class DrawingState
+{
+public:
+  DrawingState(vtkOpenGLState* state, bool blended)
+    : Blend(state, GL_BLEND)
+    , DepthTest(state, GL_DEPTH_TEST)
+    , CullFace(state, GL_CULL_FACE)
+    , DepthMask(state)
+    , DepthFunction(state)
+    , BlendFunction(state)
+  {
+    state->vtkglDisable(GL_CULL_FACE);
+    state->vtkglEnable(GL_DEPTH_TEST);
+    state->vtkglDepthFunc(GL_LEQUAL);
+    state->vtkglDepthMask(blended ? GL_FALSE : GL_TRUE);
+    state->SetEnumState(GL_BLEND, blended);
+    if (blended)
+    {
+      state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    }
+  }
+  DrawingState(const DrawingState&) = delete;
+  void operator=(const DrawingState&) = delete;
+
+private:
+  vtkOpenGLState::ScopedglEnableDisable Blend, DepthTest, CullFace;
+  vtkOpenGLState::ScopedglDepthMask DepthMask;
+  vtkOpenGLState::ScopedglDepthFunc DepthFunction;
+  vtkOpenGLState::ScopedglBlendFuncSeparate BlendFunction;
+};
 }
 
 //------------------------------------------------------------------------------
@@ -595,27 +628,7 @@ bool vtkProgressiveIsosurfaceMapper::Internals::Refine(vtkOpenGLRenderWindow* wi
 
 void vtkProgressiveIsosurfaceMapper::Internals::Composite(vtkOpenGLRenderWindow* window)
 {
-  vtkOpenGLState* state = window->GetState();
-  vtkOpenGLState::ScopedglEnableDisable blend(state, GL_BLEND);
-  vtkOpenGLState::ScopedglEnableDisable depthTest(state, GL_DEPTH_TEST);
-  vtkOpenGLState::ScopedglEnableDisable cullFace(state, GL_CULL_FACE);
-  vtkOpenGLState::ScopedglDepthMask depthMask(state);
-  vtkOpenGLState::ScopedglDepthFunc depthFunction(state);
-  vtkOpenGLState::ScopedglBlendFuncSeparate blendFunction(state);
-  const bool translucent = this->Scene.Lighting[1] != 0;
-  state->vtkglDisable(GL_CULL_FACE);
-  state->vtkglEnable(GL_DEPTH_TEST);
-  state->vtkglDepthFunc(GL_LEQUAL);
-  state->vtkglDepthMask(translucent ? GL_FALSE : GL_TRUE);
-  if (translucent)
-  {
-    state->vtkglEnable(GL_BLEND); // the layers' colours are multiplied by their opacities
-    state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  }
-  else
-  {
-    state->vtkglDisable(GL_BLEND);
-  }
+  const DrawingState drawing(window->GetState(), this->Scene.Lighting[1] != 0);
   this->Pipeline.Composite();
 }
 
@@ -653,15 +666,7 @@ void vtkProgressiveIsosurfaceMapper::Internals::Select(
     cells *= this->Values.Volume->GetDimensions()[axis] - 1;
   }
   selector->UpdateMaximumCellId(cells);
-  vtkOpenGLState* state = window->GetState();
-  vtkOpenGLState::ScopedglEnableDisable blend(state, GL_BLEND);
-  vtkOpenGLState::ScopedglEnableDisable depthTest(state, GL_DEPTH_TEST);
-  vtkOpenGLState::ScopedglDepthMask depthMask(state);
-  vtkOpenGLState::ScopedglDepthFunc depthFunction(state);
-  state->vtkglDisable(GL_BLEND);
-  state->vtkglEnable(GL_DEPTH_TEST);
-  state->vtkglDepthMask(GL_TRUE);
-  state->vtkglDepthFunc(GL_LEQUAL);
+  const DrawingState drawing(window->GetState(), false);
   this->Pipeline.Select(selected);
   selector->EndRenderProp();
 }
