@@ -12,7 +12,6 @@
 #include "vtkObjectFactory.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
-#include "vtkStructuredData.h"
 #include "vtkTypeInt64Array.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVariant.h"
@@ -452,7 +451,9 @@ void vtkCompressedVolume::GetOwnExtent(vtkImageData* image, int own[6])
 {
   image->GetExtent(own);
   vtkUnsignedCharArray* ghosts = image->GetCellGhostArray();
-  if (!ghosts || image->GetNumberOfPoints() == 0)
+  // marks of another image say nothing about this one
+  if (!ghosts || image->GetNumberOfPoints() <= 0 ||
+    ghosts->GetNumberOfValues() != image->GetNumberOfCells())
   {
     return;
   }
@@ -471,13 +472,16 @@ void vtkCompressedVolume::GetOwnExtent(vtkImageData* image, int own[6])
   {
     --last;
   }
-  int low[3], high[3];
-  vtkStructuredData::ComputeCellStructuredCoordsForExtent(first - begin, image->GetExtent(), low);
-  vtkStructuredData::ComputeCellStructuredCoordsForExtent(last - begin, image->GetExtent(), high);
+  // not by vtkStructuredData, whose cells of a slice overflow 32 bits
+  vtkTypeInt64 low = first - begin, high = last - begin;
   for (int axis = 0; axis < 3; ++axis)
   {
-    own[2 * axis] = low[axis];
-    own[2 * axis + 1] = std::min(high[axis] + 1, own[2 * axis + 1]);
+    const vtkTypeInt64 start = own[2 * axis], end = own[2 * axis + 1];
+    const vtkTypeInt64 cells = std::max<vtkTypeInt64>(end - start, 1);
+    own[2 * axis] = static_cast<int>(start + low % cells);
+    own[2 * axis + 1] = static_cast<int>(std::min(start + high % cells + 1, end));
+    low /= cells;
+    high /= cells;
   }
 }
 
