@@ -128,6 +128,14 @@ bool IsNumericType(int type)
 }
 
 //------------------------------------------------------------------------------
+// Whether sums and differences of positions in an extent do not overflow.
+bool IsBounded(vtkTypeInt64 low, vtkTypeInt64 high)
+{
+  const vtkTypeInt64 most = vtkTypeInt64(1) << 30;
+  return -most <= low && low <= most && -most <= high && high <= most;
+}
+
+//------------------------------------------------------------------------------
 bool Contains(const int outer[6], const int inner[6])
 {
   return outer[0] <= inner[0] && inner[1] <= outer[1] && outer[2] <= inner[2] &&
@@ -321,11 +329,10 @@ void vtkCompressedVolume::FindExtent(vtkImageData* image, const vtkTypeInt64 dim
   const int cells = this->Association == CellData ? 1 : 0;
   const auto fits = [&](const vtkTypeInt64* extent)
   {
-    const vtkTypeInt64 most = std::numeric_limits<int>::max() / 2;
     for (int axis = 0; axis < 3; ++axis)
     {
       const vtkTypeInt64 low = extent[2 * axis], high = extent[2 * axis + 1];
-      if (low < -most || high > most || high - low + 1 - cells != dims[axis])
+      if (!IsBounded(low, high) || high - low + 1 - cells != dims[axis])
       {
         return false;
       }
@@ -355,8 +362,8 @@ std::string vtkCompressedVolume::CheckGeometry(vtkImageData* image)
   std::ostringstream message;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const vtkTypeInt64 expected = static_cast<vtkTypeInt64>(this->Extent[2 * axis + 1]) -
-      this->Extent[2 * axis] + (cells ? 0 : 1);
+    const vtkTypeInt64 low = this->Extent[2 * axis], high = this->Extent[2 * axis + 1];
+    const vtkTypeInt64 expected = high - low + (cells ? 0 : 1);
     if (dims[axis] != expected)
     {
       message << DimensionsName << " is " << dims[axis] << " along axis " << axis
@@ -367,6 +374,12 @@ std::string vtkCompressedVolume::CheckGeometry(vtkImageData* image)
     {
       message << "it has " << expected << (cells ? " cells" : " points") << " along axis " << axis
               << ", at least 2 and at most 2^31-1 are needed";
+      return message.str();
+    }
+    if (!IsBounded(low, high))
+    {
+      message << "its extent along axis " << axis << ", " << low << " to " << high
+              << ", reaches beyond -2^30 or 2^30";
       return message.str();
     }
   }
