@@ -32,6 +32,7 @@ struct vtkZFPReader::Layout
   int BlockBits = 0;
   int HeaderBits = 0; // the stream begins right behind them
 
+  // where CheckLayout() finds nothing wrong
   vtkTypeInt64 PayloadBits() const
   {
     return vtkCompressedVolume::NumberOfBlocksFor(this->Dimensions) * this->BlockBits;
@@ -202,7 +203,8 @@ std::string vtkZFPReader::CheckLayout(const Layout& layout)
     return message.str();
   }
   const vtkTypeInt64 streamBytes = vtkCompressedVolume::StreamBytesFor(dims, layout.BlockBits);
-  const vtkTypeInt64 needed = (layout.HeaderBits + layout.PayloadBits() + 7) / 8;
+  const vtkTypeInt64 needed =
+    streamBytes < 0 ? 0 : (layout.HeaderBits + layout.PayloadBits() + 7) / 8;
   // without header the size is all that shows a wrong dimension or rate
   const bool tooLong = layout.HeaderBits == 0 && layout.FileBytes > streamBytes;
   if (streamBytes < 0 || layout.FileBytes < needed || tooLong)
