@@ -17,6 +17,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkZFPBlocks.h"
+#include "vtkZFPMemory.h"
 
 #include <algorithm>
 #include <cstring>
@@ -313,7 +314,12 @@ bool vtkImageZFPCompress::Compress(vtkDataArray* array, const Part& part, vtkIma
   const vtkSmartPointer<vtkDataArray> samples = CutOut(array, given, covered);
   const int blockBits = vtkCompressedVolume::BlockBitsForRate(this->Rate);
   vtkNew<vtkUnsignedCharArray> stream;
-  stream->SetNumberOfValues(vtkCompressedVolume::StreamBytesFor(dims, blockBits));
+  const vtkTypeInt64 bytes = vtkCompressedVolume::StreamBytesFor(dims, blockBits);
+  if (!vtkZFPMemory::Allocate(stream.Get(), bytes))
+  {
+    vtkErrorMacro("There is " << vtkZFPMemory::Objection("the stream", dims, bytes) << ".");
+    return false;
+  }
   vtkZFPBlocks blocks(dims, blockBits, stream->GetPointer(0), this->NumberOfThreads);
   vtkZFPBlocks::Summary summary;
   if (!blocks.Encode(samples, this->Component, 0, blocks.GetNumberOfLayers(), summary,

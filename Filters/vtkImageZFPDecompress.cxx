@@ -15,6 +15,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkZFPBlocks.h"
+#include "vtkZFPMemory.h"
 
 vtkStandardNewMacro(vtkImageZFPDecompress);
 
@@ -79,7 +80,13 @@ int vtkImageZFPDecompress::RequestData(
   volume->GetDimensions(dims);
   vtkNew<vtkFloatArray> samples;
   samples->SetName(volume->GetArrayName().c_str());
-  samples->SetNumberOfValues(static_cast<vtkIdType>(dims[0]) * dims[1] * dims[2]);
+  const vtkTypeInt64 count = static_cast<vtkTypeInt64>(dims[0]) * dims[1] * dims[2];
+  if (!vtkZFPMemory::Allocate(samples.Get(), count))
+  {
+    vtkErrorMacro("There is " << vtkZFPMemory::Objection("the values", dims, 4 * count) << ".");
+    this->SetErrorCode(vtkErrorCode::UserError);
+    return 1;
+  }
 
   const auto stream = vtkZFPBlocks::Align(volume->GetStream());
   vtkZFPBlocks blocks(dims, volume->GetBlockBits(), stream->GetPointer(0), this->NumberOfThreads);

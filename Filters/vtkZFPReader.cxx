@@ -12,6 +12,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkZFPBlocks.h"
+#include "vtkZFPMemory.h"
 
 #include <zfp.h>
 
@@ -291,7 +292,11 @@ std::string vtkZFPReader::Load(const Layout& layout, vtkImageData* output)
   const vtkTypeInt64 bytes =
     vtkCompressedVolume::StreamBytesFor(layout.Dimensions, layout.BlockBits);
   vtkNew<vtkUnsignedCharArray> stream;
-  stream->SetNumberOfValues(bytes);
+  if (!vtkZFPMemory::Allocate(stream.Get(), bytes))
+  {
+    return "cannot be read: there is " +
+      vtkZFPMemory::Objection("the stream", layout.Dimensions, bytes);
+  }
   auto* const words = reinterpret_cast<vtkTypeUInt64*>(stream->GetPointer(0));
   if (!ReadWords(layout.FileName, layout.FileBytes, layout.HeaderBits, words, bytes / 8))
   {
