@@ -197,7 +197,8 @@ public:
       }
       default:
       {
-        BOTH_DO(stream_rseek, static_cast<bitstream_offset>(bytes.Below(64 * Half)));
+        const bitstream_offset offset = bytes.Below(64 * Half);
+        BOTH_DO(stream_rseek, offset);
       }
     }
     BOTH(stream_rtell);
@@ -216,7 +217,8 @@ public:
       case 1:
       case 2:
       {
-        BOTH(stream_write_bits, bytes.Take<vtkTypeUInt64>(), n);
+        const vtkTypeUInt64 value = bytes.Take<vtkTypeUInt64>();
+        BOTH(stream_write_bits, value, n);
         break;
       }
       case 3:
@@ -232,7 +234,8 @@ public:
       default:
       {
         this->Flush();
-        BOTH_DO(stream_wseek, static_cast<bitstream_offset>(bytes.Below(64 * Half)));
+        const bitstream_offset offset = bytes.Below(64 * Half);
+        BOTH_DO(stream_wseek, offset);
       }
     }
     BOTH(stream_wtell);

@@ -197,8 +197,13 @@ inline vtkSmartPointer<vtkImageData> HostileImage(Bytes& bytes)
   {
     for (int axis = 0; axis < 3; ++axis)
     {
-      extent[2 * axis] += bytes.Below(dims[axis]);
-      extent[2 * axis + 1] -= bytes.Below(dims[axis]);
+      const vtkTypeInt64 start =
+        static_cast<vtkTypeInt64>(extent[2 * axis]) + bytes.Below(dims[axis]);
+      const vtkTypeInt64 end =
+        static_cast<vtkTypeInt64>(extent[2 * axis + 1]) - bytes.Below(dims[axis]);
+      const vtkTypeInt64 most = std::numeric_limits<int>::max();
+      extent[2 * axis] = static_cast<int>(std::min(start, most));
+      extent[2 * axis + 1] = static_cast<int>(std::max(end, start - 1)); // VTK's least
     }
   }
   image->SetExtent(extent);
