@@ -9,27 +9,43 @@
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLImageDataWriter.h>
 
+#include <cctype>
+
 namespace
 {
 using namespace fuzz;
 
 //------------------------------------------------------------------------------
-// Replaces characters of the values of arrays.
+// Whether a character is a digit of an array's values, and not of text, whose end VTK's reader
+// takes on trust.
+bool IsDigitOfValue(const std::string& text, std::size_t at)
+{
+  const std::size_t tag = text.rfind('<', at);
+  const std::size_t end = text.find('>', tag);
+  const std::string name = text.substr(tag, end - tag);
+  return end < at && std::isdigit(text[at]) && name.find("<DataArray ") == 0 &&
+    name.find("\"String\"") == std::string::npos;
+}
+
+//------------------------------------------------------------------------------
+// Replaces digits of the values of arrays, from somewhere on.
 void ChangeValues(std::string& text, Bytes& bytes)
 {
   const std::string characters = "0123456789-+.eEnaif ";
-  const std::size_t fields = text.find("<FieldData>");
+  const std::size_t begin = text.find("<FieldData>");
   const std::size_t end = text.find("</FieldData>");
-  if (fields == std::string::npos || end == std::string::npos)
+  if (begin == std::string::npos || end == std::string::npos)
   {
     return;
   }
   for (int i = bytes.Below(12); i > 0; --i)
   {
-    std::size_t at = fields + bytes.Take<std::uint16_t>() % (end - fields);
-    at = text.find('>', at); // the end of a tag
-    at = text.find_first_of(characters.substr(0, 11), at);
-    if (at != std::string::npos && at < end && text[at - 1] != '<' && text[at - 1] != '=')
+    std::size_t at = begin + bytes.Take<std::uint16_t>() % (end - begin);
+    while (at < end && !IsDigitOfValue(text, at))
+    {
+      ++at;
+    }
+    if (at < end)
     {
       text[at] = characters[bytes.Below(static_cast<int>(characters.size()))];
     }
