@@ -17,6 +17,7 @@ struct Taken
   vtkSmartPointer<vtkDataArray> Samples;
   int Dimensions[3];
   double Rate;
+  bool MaskNonFinite;
   int Component;
 };
 
@@ -28,6 +29,8 @@ void Start(vtkCompressedVolumeBuilder* builder, Taken& taken, Bytes& bytes)
     [&]() { return hostile ? static_cast<int>(bytes.Integer()) : 2 + bytes.Below(12); });
   taken.Rate = bytes.Number();
   taken.Samples = nullptr;
+  taken.MaskNonFinite = bytes.Flag();
+  builder->SetMaskNonFinite(taken.MaskNonFinite);
   const bool started = builder->Start(taken.Dimensions, taken.Rate);
   CHECK(started == builder->GetErrorMessage().empty(), builder->GetErrorMessage());
 }
@@ -94,6 +97,7 @@ void Finish(vtkCompressedVolumeBuilder* builder, Taken& taken)
   vtkNew<vtkImageZFPCompress> compress;
   compress->SetInputData(plain);
   compress->SetRate(taken.Rate);
+  compress->SetMaskNonFinite(taken.MaskNonFinite);
   CHECK(Update(compress), "not compressed");
   vtkNew<vtkCompressedVolume> expected, made;
   CHECK(expected->Read(compress->GetOutput()), expected->GetErrorMessage());
@@ -104,6 +108,7 @@ void Finish(vtkCompressedVolumeBuilder* builder, Taken& taken)
       std::memcmp(made->GetStream()->GetPointer(0), expected->GetStream()->GetPointer(0), size) ==
         0,
     "another stream");
+  CHECK(made->GetHiddenSamples() == expected->GetHiddenSamples(), "another mask");
 }
 }
 

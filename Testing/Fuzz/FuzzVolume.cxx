@@ -112,7 +112,8 @@ void CheckContour(
     contour->SetValue(values + i, samples->GetComponent(at, 0));
   }
   if (!Update(contour) || values > 0 ||
-    volume->GetAssociation() != vtkCompressedVolume::PointData || !volume->Covers(image))
+    volume->GetAssociation() != vtkCompressedVolume::PointData || !volume->Covers(image) ||
+    volume->HidesAny())
   {
     return;
   }

@@ -13,6 +13,7 @@
 #include <vtkIntArray.h>
 #include <vtkStringArray.h>
 #include <vtkTypeInt64Array.h>
+#include <vtkTypeUInt64Array.h>
 #include <vtkVariant.h>
 
 namespace fuzz
@@ -26,7 +27,8 @@ struct FieldArray
 const FieldArray FieldArrays[] = { { "ProgIso.ZFP.Version", 1 }, { "ProgIso.ZFP.BlockBits", 1 },
   { "ProgIso.ZFP.Dimensions", 3 }, { "ProgIso.ZFP.Range", 2 }, { "ProgIso.ZFP.ScalarType", 1 },
   { "ProgIso.ZFP.ArrayName", 1 }, { "ProgIso.ZFP.Component", 1 }, { "ProgIso.ZFP.Association", 1 },
-  { "ProgIso.ZFP.Extent", 6 }, { "ProgIso.ZFP.Stream", 1 } };
+  { "ProgIso.ZFP.Extent", 6 }, { "ProgIso.ZFP.Stream", 1 }, { "ProgIso.ZFP.HiddenSamples", 2 },
+  { "ProgIso.ZFP.HiddenCells", 2 } };
 constexpr int NumberOfFieldArrays = sizeof(FieldArrays) / sizeof(*FieldArrays);
 
 const int ArrayTypes[] = { VTK_INT, VTK_DOUBLE, VTK_LONG_LONG, VTK_UNSIGNED_CHAR, VTK_FLOAT,
@@ -112,12 +114,29 @@ inline void DamageOne(vtkImageData* image, Bytes& bytes)
 }
 
 //------------------------------------------------------------------------------
+// Runs of blocks, as vtkBlockMask has them; now and then out of order, or beyond the last block.
+inline void AddHidden(vtkFieldData* fields, const char* name, vtkTypeInt64 blocks, Bytes& bytes)
+{
+  vtkNew<vtkTypeUInt64Array> runs;
+  runs->SetName(name);
+  runs->SetNumberOfComponents(2);
+  vtkTypeUInt64 first = 0;
+  for (int i = bytes.Below(6); i >= 0 && first < static_cast<vtkTypeUInt64>(blocks); --i)
+  {
+    const vtkTypeUInt64 kinds[] = { 0, ~vtkTypeUInt64(0), 1, bytes.Take<vtkTypeUInt64>() };
+    runs->InsertNextValue(first);
+    runs->InsertNextValue(kinds[bytes.Below(4)]);
+    first += 1 + bytes.Below(8);
+  }
+  fields->AddArray(runs);
+}
+
+//------------------------------------------------------------------------------
 // Ghost marks, as many as there are cells or not.
-inline void AddGhosts(vtkImageData* image, Bytes& bytes)
+inline void AddGhosts(vtkDataSetAttributes* attributes, vtkIdType number, Bytes& bytes)
 {
   vtkNew<vtkUnsignedCharArray> ghosts;
-  const vtkIdType cells =
-    std::min<vtkIdType>(std::max<vtkIdType>(image->GetNumberOfCells(), 0), 8192);
+  const vtkIdType cells = std::min<vtkIdType>(std::max<vtkIdType>(number, 0), 8192);
   ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
   ghosts->SetNumberOfValues(std::max<vtkIdType>(cells + bytes.Take<std::int8_t>() % 3, 0));
   ghosts->Fill(bytes.Flag() ? vtkDataSetAttributes::DUPLICATECELL : 0);
@@ -126,7 +145,7 @@ inline void AddGhosts(vtkImageData* image, Bytes& bytes)
     const vtkIdType at = bytes.Take<std::uint16_t>() % ghosts->GetNumberOfValues();
     ghosts->SetValue(at, static_cast<unsigned char>(bytes.Byte()));
   }
-  image->GetCellData()->AddArray(ghosts);
+  attributes->AddArray(ghosts);
 }
 
 //------------------------------------------------------------------------------
@@ -175,7 +194,9 @@ inline vtkSmartPointer<vtkImageData> HostileImage(Bytes& bytes)
     extent[2 * axis + 1] =
       static_cast<int>(std::min<vtkTypeInt64>(end, std::numeric_limits<int>::max()));
   }
-  const int version = 1, blockBits = 9 + bytes.Below(2040), type = VTK_FLOAT, component = 0;
+  // masks are more than the first version has
+  const int hidden = bytes.Below(4), version = 1 + (hidden != 0), blockBits = 9 + bytes.Below(2040),
+            type = VTK_FLOAT, component = 0;
   const double range[2] = { -1.0, 1.0 };
   const vtkStdString name = "density";
   auto image = vtkSmartPointer<vtkImageData>::New();
@@ -193,6 +214,15 @@ inline vtkSmartPointer<vtkImageData> HostileImage(Bytes& bytes)
   stream->SetName("ProgIso.ZFP.Stream");
   stream->SetNumberOfValues(vtkCompressedVolume::StreamBytesFor(dims, blockBits));
   fields->AddArray(stream);
+  const vtkTypeInt64 blocks = vtkCompressedVolume::NumberOfBlocksFor(dims);
+  if (hidden & 1)
+  {
+    AddHidden(fields, "ProgIso.ZFP.HiddenSamples", blocks, bytes);
+  }
+  if (hidden & 2)
+  {
+    AddHidden(fields, "ProgIso.ZFP.HiddenCells", blocks, bytes);
+  }
   if (kinds & 4) // a piece: the image is a part of what the stream covers
   {
     for (int axis = 0; axis < 3; ++axis)
@@ -213,7 +243,7 @@ inline vtkSmartPointer<vtkImageData> HostileImage(Bytes& bytes)
   }
   if (kinds & 16)
   {
-    AddGhosts(image, bytes);
+    AddGhosts(image->GetCellData(), image->GetNumberOfCells(), bytes);
   }
   const int damages = kinds / 32;
   for (int i = 0; i < damages; ++i)
