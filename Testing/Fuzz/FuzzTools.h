@@ -110,10 +110,12 @@ public:
   // a stream: what is left of the bytes, over and over
   void Fill(unsigned char* target, std::size_t count)
   {
-    const std::size_t period = this->Left();
-    for (std::size_t i = 0; i < count; ++i)
+    std::size_t done = std::min(this->Left(), count);
+    done > 0 ? std::memcpy(target, this->Next, done) : std::memset(target, 0, count);
+    for (std::size_t more = 0; done > 0 && done < count; done += more)
     {
-      target[i] = period > 0 ? this->Next[i % period] : 0;
+      more = std::min(done, count - done);
+      std::memcpy(target + done, target, more);
     }
   }
 
