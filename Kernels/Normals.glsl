@@ -63,12 +63,12 @@ Stencil PlaceStencil(ivec3 cell)
   return at;
 }
 
-// A sample by its planes on x, y and z: x, y, z, w of the four.
+// A quarter of a sample, so that no difference overflows, by its planes on x, y and z: x, y, z, w of the four.
 #ifdef HAS_CACHE_MAP
-#define SAMPLE(i, j, k) uintBitsToFloat( \
-  cacheValues[64u * SlotAt(bvec3(at.FurtherX.i, at.FurtherY.j, at.FurtherZ.k)) + at.X.i + at.Y.j + at.Z.k])
+#define SAMPLE(i, j, k) (0.25 * uintBitsToFloat( \
+  cacheValues[64u * SlotAt(bvec3(at.FurtherX.i, at.FurtherY.j, at.FurtherZ.k)) + at.X.i + at.Y.j + at.Z.k]))
 #else
-#define SAMPLE(i, j, k) uintBitsToFloat(cacheValues[at.X.i + at.Y.j + at.Z.k])
+#define SAMPLE(i, j, k) (0.25 * uintBitsToFloat(cacheValues[at.X.i + at.Y.j + at.Z.k]))
 #endif
 
 #ifdef COLORED

@@ -7,13 +7,14 @@ from time import perf_counter
 
 import numpy as np
 
-from ..compression import compress
 from ..isosurface import make_isosurface
+from . import tolerances
 from .case import Case, Outcome
-from .fields import blobs, make_image, noise
+from .fields import blobs, noise
 from .scene import Picture, check_depths, check_views, compressed
 
 _SHAPE = (24, 20, 28)
+_NOISE = tolerances.GRAZING_FRACTION_NOISE
 
 
 def _scaled(scale, settings):
@@ -22,11 +23,10 @@ def _scaled(scale, settings):
 
 
 def _largest(settings):
-    """White noise up to the largest float32, of either sign."""
+    """White noise up to the largest float32, of either sign: differences go beyond."""
     values = noise(_SHAPE, 12)
-    values = (values / np.abs(values).max() * float(np.finfo(np.float32).max) * 0.999).astype(np.float32)
-    limits = 0.10
-    return check_views(settings, compressed(values), (0.0, 1e38, -2e38), grazing=limits)
+    values = (values * (3.3e38 / np.abs(values).max())).astype(np.float32)
+    return check_views(settings, compressed(values), (0.0, 1e38, -2e38), grazing=_NOISE)
 
 
 def _integers(kind, settings):
@@ -36,7 +36,7 @@ def _integers(kind, settings):
     middle = (float(about.min) + float(about.max)) / 2
     reach = float(about.max) - middle
     image = compressed(values)
-    return check_views(settings, image, (middle, middle + 0.9 * reach), grazing=0.10)
+    return check_views(settings, image, (middle, middle + 0.9 * reach), grazing=_NOISE)
 
 
 def _whole(isovalue, settings, **more):
@@ -101,8 +101,7 @@ def _beyond_float32(_settings):
 def _tiny(scale, settings):
     """Below what zfp's encoder takes."""
     values = (blobs(_SHAPE, 9).astype(float) * scale).astype(np.float32)
-    outcome = _refused(lambda: compressed(values), "2^-98")
-    return outcome
+    return _refused(lambda: compressed(values), "too small")
 
 
 def _no_isovalue(_settings):
