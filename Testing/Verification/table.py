@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from . import stiff, values
+from . import normals, stiff, values
 from .case import row_of
 
 SECTIONS = {
     "Stiff fields": stiff.CASES,
     "Values": values.CASES,
+    "Normals": normals.CASES,
 }
 
 
