@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from . import normals, stiff, values
+from . import geometry, normals, stiff, values
 from .case import row_of
 
 SECTIONS = {
     "Stiff fields": stiff.CASES,
     "Values": values.CASES,
     "Normals": normals.CASES,
+    "Geometry": geometry.CASES,
 }
 
 
