@@ -107,10 +107,12 @@ constexpr unsigned char HidingCell =
   vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::REFINEDCELL;
 
 //------------------------------------------------------------------------------
-// An image's ghost array, or null where no tuple has such a flag.
-vtkUnsignedCharArray* FindHiding(vtkUnsignedCharArray* ghosts, unsigned char hiding)
+// An image's ghost array, or null where no tuple has such a flag, or they are not one for each of
+// `number` points or cells.
+vtkUnsignedCharArray* FindHiding(
+  vtkUnsignedCharArray* ghosts, vtkIdType number, unsigned char hiding)
 {
-  if (!ghosts)
+  if (!ghosts || ghosts->GetNumberOfComponents() != 1 || ghosts->GetNumberOfTuples() != number)
   {
     return nullptr;
   }
@@ -299,10 +301,11 @@ vtkSmartPointer<vtkUnsignedCharArray> vtkImageZFPCompress::Part::HiddenSamples(
   vtkImageData* input) const
 {
   vtkSmartPointer<vtkUnsignedCharArray> flags =
-    FindHiding(input->GetPointGhostArray(), HidingPoint);
+    FindHiding(input->GetPointGhostArray(), input->GetNumberOfPoints(), HidingPoint);
   if (this->Association == vtkCompressedVolume::CellData)
   {
-    flags = HideCells(flags, FindHiding(input->GetCellGhostArray(), HidingCell), this->Input);
+    flags = HideCells(flags,
+      FindHiding(input->GetCellGhostArray(), input->GetNumberOfCells(), HidingCell), this->Input);
   }
   return flags ? vtkUnsignedCharArray::SafeDownCast(this->Samples(flags)) : nullptr;
 }
@@ -310,7 +313,8 @@ vtkSmartPointer<vtkUnsignedCharArray> vtkImageZFPCompress::Part::HiddenSamples(
 //------------------------------------------------------------------------------
 vtkBlockMask vtkImageZFPCompress::Part::HiddenCells(vtkImageData* input) const
 {
-  vtkUnsignedCharArray* flags = FindHiding(input->GetCellGhostArray(), HidingCell);
+  vtkUnsignedCharArray* flags =
+    FindHiding(input->GetCellGhostArray(), input->GetNumberOfCells(), HidingCell);
   if (!flags || this->Association == vtkCompressedVolume::CellData)
   {
     return vtkBlockMask();
