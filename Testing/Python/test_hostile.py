@@ -214,6 +214,13 @@ def test_metadata(folder, case):
             call()
 
 
+def test_origin_of_two_numbers(folder):
+    header = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nspacings: 1 1 1\nspace origin: (1,2)\nencoding: raw\n\n"
+    (folder / "x.nrrd").write_bytes(header.encode() + bytes(8))
+    with pytest.raises(ValueError, match=r"origin \[1.0, 2.0\]"):
+        progiso.read(folder / "x.nrrd")
+
+
 def test_command_line(folder):
     """Exit status 1 and one line."""
     for change, word in (METADATA["truncated"], METADATA["range reversed"], (GEOMETRIES["spacing zero"], "finite")):
