@@ -197,7 +197,8 @@ def describe(image):
     -------
     dict
         ``rate`` (bits per sample), ``block_bits``, ``samples`` per axis, ``blocks`` in total,
-        ``stream_bytes``, ``range``, ``array``, ``component``, ``association`` ("point" or
+        ``stream_bytes``, ``range``, ``offset`` and ``scale`` (a value is offset + scale times what
+        the stream has), ``array``, ``component``, ``association`` ("point" or
         "cell") and ``scalar_type`` (VTK's number of the original type).
 
     Raises
@@ -215,6 +216,8 @@ def describe(image):
         "blocks": volume.GetNumberOfBlocks(),
         "stream_bytes": volume.GetStream().GetNumberOfValues(),
         "range": list(volume.GetRange()),
+        "offset": volume.GetOffset(),
+        "scale": volume.GetScale(),
         "array": volume.GetArrayName(),
         "component": volume.GetComponent(),
         "association": "cell" if volume.GetAssociation() else "point",
