@@ -60,8 +60,8 @@ public:
   ///@{
   /**
    * The stream's units, see vtkCompressedVolume: samples are kept as float32 after Offset is taken
-   * off and the rest divided by Scale, above 0. Default 0 and 1. vtkImageZFPCompress, which sees all
-   * samples, chooses them itself. Not to be changed between slabs.
+   * off and the rest divided by Scale, above 0. Default 0 and 1. vtkImageZFPCompress, which sees
+   * all samples, chooses them itself. Not to be changed between slabs.
    */
   vtkSetMacro(Offset, double);
   vtkGetMacro(Offset, double);
@@ -98,8 +98,8 @@ public:
   /**
    * Store the compressed volume in an image, when all slices are there: its dimensions and field
    * data are set, its point and cell data emptied; spacing, origin and direction matrix stay.
-   * Refused for values all of which are tiny to zfp (below 2^-74, about 5e-23) at the Scale. Frees what the builder
-   * holds.
+   * Refused for values all of which are tiny to zfp (below 2^-74, about 5e-23) at the Scale. Frees
+   * what the builder holds.
    */
   bool Finish(vtkImageData* image);
 

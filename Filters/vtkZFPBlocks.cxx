@@ -365,7 +365,8 @@ struct FindRangeWorker
 // Does float32 hold the values of a type between two of them?
 bool AreExact(int type, const double range[2])
 {
-  const auto exact = [](double value) { return static_cast<double>(static_cast<float>(value)) == value; };
+  const auto exact = [](double value)
+  { return static_cast<double>(static_cast<float>(value)) == value; };
   const double most = 16777216.0; // of whole numbers
   return type == VTK_DOUBLE ? range[0] == range[1] && exact(range[0])
                             : -most <= range[0] && range[1] <= most;
