@@ -12,6 +12,10 @@ ivec3 CellAt(Ray ray, ivec3 block, double t)
   return entry - (1 - ray.Step) / 2 + crossed * ray.Step;
 }
 
+#ifdef HAS_HIDDEN_CELLS
+#include "HiddenCells.glsl"
+#endif
+
 vec4 LoadSamples(uvec4 at)
 {
   return uintBitsToFloat(uvec4(cacheValues[at.x], cacheValues[at.y], cacheValues[at.z], cacheValues[at.w]));
@@ -74,6 +78,30 @@ bool HoldsSurface(Corners w)
   return false;
 #else
   return Straddle(w);
+#endif
+}
+
+// What is hidden of a block, whose slots, with a cache, were found last.
+uvec2 HiddenCellsOf(ivec3 block)
+{
+#ifdef HAS_HIDDEN_CELLS
+#ifdef HAS_CACHE_MAP
+  uint at = 4u * HiddenRow(lowSlots.x);
+#else
+  uint at = 4u * HiddenRow(BlockIndex(block));
+#endif
+  return uvec2(cacheValues[at], cacheValues[at + 1u]);
+#else
+  return uvec2(0u);
+#endif
+}
+
+bool IsVisible(uvec2 hidden, ivec3 cell)
+{
+#ifdef HAS_HIDDEN_CELLS
+  return !Hides(hidden, cell);
+#else
+  return true;
 #endif
 }
 
@@ -157,6 +185,7 @@ bool IntersectBlock(Ray ray, ivec3 block, double t0, double end, out Hit hit)
 {
   hit = MISS;
   ivec3 cell = CellAt(ray, block, t0);
+  uvec2 hidden = HiddenCellsOf(block);
   for (int tested = 0; tested < 16; ++tested) // a ray crosses at most 10 cells of 4^3
   {
     Corners w;
@@ -168,7 +197,7 @@ bool IntersectBlock(Ray ray, ivec3 block, double t0, double end, out Hit hit)
       exits = PlanesT(ray, ExitPlanes(ray, cell, 1));
       t1 = min(SmallestOf(exits), end);
       w = LoadCorners(cell);
-      crossed = HoldsSurface(w);
+      crossed = HoldsSurface(w) && IsVisible(hidden, cell);
       if (crossed || t1 >= end)
       {
         break;

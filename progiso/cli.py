@@ -106,6 +106,10 @@ def _add_array(command, rate="bits per sample, in (0, 32] (default: 8)"):
     command.add_argument("--rate", type=float, help=rate)
     command.add_argument("--array", help="name of the array (default: the active scalars)")
     command.add_argument("--component", type=int, help="component of the array (default: 0)")
+    command.add_argument(
+        "--mask-nan", action="store_true",
+        help="leave holes where samples are NaN or infinite, which are an error otherwise",
+    )  # fmt: skip
 
 
 def _add_compress(commands):
@@ -325,6 +329,7 @@ def _compress(parsed):
             parsed.component or 0,
             parsed.threads,
             progress,
+            parsed.mask_nan,
         )
     _save(volume, parsed.out, parsed.appended)
     if parsed.out.suffix.lower() == ".zfp":
@@ -418,6 +423,7 @@ def _contour(parsed):
             not parsed.no_normals,
             threads=parsed.threads,
             progress=progress,
+            mask_nan=parsed.mask_nan,
         )
     with progress_bar(f"Writing {parsed.out.name}") as progress:
         progiso.save_surface(surface, parsed.out, progress)
@@ -465,6 +471,7 @@ def _render(parsed):
             parsed.memory_budget,
             parsed.detailed,
             parsed.opacity or 1.0,
+            parsed.mask_nan,
         )
     _write_results(result, parsed)
     _print_summary(result)
