@@ -21,10 +21,11 @@ vec4 LoadSamples(uvec4 at)
   return uintBitsToFloat(uvec4(cacheValues[at.x], cacheValues[at.y], cacheValues[at.z], cacheValues[at.w]));
 }
 
+// In sixteenths: nothing overflows that is made of it on the way to a root, and a power of two changes no other bit.
 vec4 Excess(vec4 values, int surface)
 {
-  vec4 isovalue = scene.Isovalues[surface];
-  precise vec4 excess = (values - isovalue.x) - isovalue.y;
+  vec2 isovalue = 0.0625 * scene.Isovalues[surface].xy;
+  precise vec4 excess = (0.0625 * values - isovalue.x) - isovalue.y;
   return excess;
 }
 

@@ -266,7 +266,7 @@ vtkProgressiveIsosurfaceMapper::Internals::~Internals()
   }
 }
 
-// What the stages have room for.
+// What the stages have room for, and isovalues that are numbers.
 bool vtkProgressiveIsosurfaceMapper::Internals::CheckLimits(
   vtkRenderer* renderer, vtkVolume* volume)
 {
@@ -275,6 +275,10 @@ bool vtkProgressiveIsosurfaceMapper::Internals::CheckLimits(
   int shown = 0, lit = 0;
   for (int i = 0; i < values->GetNumberOfContours(); ++i)
   {
+    if (std::isnan(values->GetValue(i)))
+    {
+      return this->Report("cannot show isovalue " + std::to_string(i) + ": it is not a number");
+    }
     shown += property->GetScalarOpacity()->GetValue(values->GetValue(i)) > 0.0 ? 1 : 0;
   }
   vtkCollectionSimpleIterator iterator;
