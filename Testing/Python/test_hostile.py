@@ -7,6 +7,7 @@ import sys
 import numpy as np
 import progiso
 import pytest
+from oracle import zfp_reference
 from oracle.caster import Camera
 from scenes import CACHED, Scene, least_budget
 from support import PREFIX, blobs, make_image, metadata, noise, reference_values, vtk_messages
@@ -118,6 +119,29 @@ def test_colors(damaged):
     for shown, value in ((good, 0.1), (image, isovalue)):
         looks = {"ColorInputData": image, "ColorLookupTable": table}
         assert shows(shown, [value], **looks, **CACHED) == shows(shown, [value], **looks)
+
+
+def infinite_block(sign):
+    """Find bits of a block of the largest exponent that libzfp decodes to infinite values of one sign, among others."""
+    rng = np.random.default_rng(1)
+    while True:  # a few times
+        bits = np.append(np.array([255, 255], np.uint8), rng.integers(0, 256, 254, np.uint8))
+        values = zfp_reference.decode(bits.tobytes(), (4, 4, 4), 2048)
+        if np.isinf(values).any() and np.isfinite(np.maximum(-sign * values, 0)).all():
+            return bits
+
+
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_infinite_values_hide_no_other_surface(sign):
+    """A macrocell with a block of infinite values: its other blocks are shown as before."""
+    image = progiso.compress(make_image(blobs((16, 16, 16), 5)), 32)
+    camera = Camera((40.0, 45.0, 50.0), (7.5, 7.5, 7.5), view_angle=25.0)
+    before = Scene(image, 0.1, camera, SIZE).depth()
+    metadata(image, "Stream")[:256] = infinite_block(sign)
+    after = Scene(image, 0.1, camera, SIZE).depth()
+    unaffected = before < np.linalg.norm(np.subtract(camera.position, (4, 4, 4)))  # nearer than that block
+    assert unaffected.mean() > 0.1
+    assert np.array_equal(before[unaffected], after[unaffected])
 
 
 @pytest.mark.parametrize("low, high", [(0, 1e-30), (-1e30, 1e30), (7, 8), (-1e300, 1e300)])
