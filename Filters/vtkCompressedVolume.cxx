@@ -12,7 +12,6 @@
 #include "vtkObjectFactory.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
-#include "vtkStructuredData.h"
 #include "vtkTypeInt64Array.h"
 #include "vtkTypeUInt64Array.h"
 #include "vtkUnsignedCharArray.h"
@@ -38,12 +37,14 @@ const char* const ArrayNameName = "ProgIso.ZFP.ArrayName";
 const char* const ComponentName = "ProgIso.ZFP.Component";
 const char* const AssociationName = "ProgIso.ZFP.Association";
 const char* const ExtentName = "ProgIso.ZFP.Extent";
+const char* const OffsetName = "ProgIso.ZFP.Offset";
+const char* const ScaleName = "ProgIso.ZFP.Scale";
 const char* const HiddenSamplesName = "ProgIso.ZFP.HiddenSamples";
 const char* const HiddenCellsName = "ProgIso.ZFP.HiddenCells";
 
 const char* const AllNames[] = { VersionName, StreamName, BlockBitsName, DimensionsName, RangeName,
-  ScalarTypeName, ArrayNameName, ComponentName, AssociationName, ExtentName, HiddenSamplesName,
-  HiddenCellsName };
+  ScalarTypeName, ArrayNameName, ComponentName, AssociationName, ExtentName, OffsetName, ScaleName,
+  HiddenSamplesName, HiddenCellsName };
 
 //------------------------------------------------------------------------------
 // Values of a field data array; an error sentence when it is not `count` integers (or numbers).
@@ -130,6 +131,14 @@ bool IsNumericType(int type)
     default:
       return false;
   }
+}
+
+//------------------------------------------------------------------------------
+// Whether sums and differences of positions in an extent do not overflow.
+bool IsBounded(vtkTypeInt64 low, vtkTypeInt64 high)
+{
+  const vtkTypeInt64 most = vtkTypeInt64(1) << 30;
+  return -most <= low && low <= most && -most <= high && high <= most;
 }
 
 //------------------------------------------------------------------------------
@@ -233,6 +242,8 @@ void vtkCompressedVolume::Clear()
     this->Extent[i] = -(i % 2);
   }
   std::fill_n(this->Range, 2, 0.0);
+  this->Offset = 0.0;
+  this->Scale = 1.0;
   this->ScalarType = 0;
   this->ArrayName.clear();
   this->Component = 0;
@@ -271,6 +282,10 @@ std::string vtkCompressedVolume::Check(vtkImageData* image)
   if (error.empty())
   {
     error = this->ReadStreamAndName(image);
+  }
+  if (error.empty())
+  {
+    error = this->ReadUnits(image);
   }
   return error.empty() ? this->ReadHidden(image) : error;
 }
@@ -332,11 +347,10 @@ void vtkCompressedVolume::FindExtent(vtkImageData* image, const vtkTypeInt64 dim
   const int cells = this->Association == CellData ? 1 : 0;
   const auto fits = [&](const vtkTypeInt64* extent)
   {
-    const vtkTypeInt64 most = std::numeric_limits<int>::max() / 2;
     for (int axis = 0; axis < 3; ++axis)
     {
       const vtkTypeInt64 low = extent[2 * axis], high = extent[2 * axis + 1];
-      if (low < -most || high > most || high - low + 1 - cells != dims[axis])
+      if (!IsBounded(low, high) || high - low + 1 - cells != dims[axis])
       {
         return false;
       }
@@ -366,8 +380,8 @@ std::string vtkCompressedVolume::CheckGeometry(vtkImageData* image)
   std::ostringstream message;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const vtkTypeInt64 expected = static_cast<vtkTypeInt64>(this->Extent[2 * axis + 1]) -
-      this->Extent[2 * axis] + (cells ? 0 : 1);
+    const vtkTypeInt64 low = this->Extent[2 * axis], high = this->Extent[2 * axis + 1];
+    const vtkTypeInt64 expected = high - low + (cells ? 0 : 1);
     if (dims[axis] != expected)
     {
       message << DimensionsName << " is " << dims[axis] << " along axis " << axis
@@ -378,6 +392,12 @@ std::string vtkCompressedVolume::CheckGeometry(vtkImageData* image)
     {
       message << "it has " << expected << (cells ? " cells" : " points") << " along axis " << axis
               << ", at least 2 and at most 2^31-1 are needed";
+      return message.str();
+    }
+    if (!IsBounded(low, high))
+    {
+      message << "its extent along axis " << axis << ", " << low << " to " << high
+              << ", reaches beyond -2^30 or 2^30";
       return message.str();
     }
   }
@@ -421,6 +441,34 @@ std::string vtkCompressedVolume::ReadStreamAndName(vtkImageData* image)
 }
 
 //------------------------------------------------------------------------------
+std::string vtkCompressedVolume::ReadUnits(vtkImageData* image)
+{
+  vtkFieldData* fields = image->GetFieldData();
+  const auto read = [fields](const char* name, double& value)
+  {
+    vtkDataArray* array = nullptr;
+    std::string error;
+    if (fields->HasArray(name))
+    {
+      error = GetNumericArray(fields, name, 1, false, array);
+      value = error.empty() ? array->GetVariantValue(0).ToDouble() : value;
+    }
+    return error;
+  };
+  std::string error = read(OffsetName, this->Offset);
+  error = error.empty() ? read(ScaleName, this->Scale) : error;
+  if (error.empty() && !std::isfinite(this->Offset))
+  {
+    return std::string(OffsetName) + " is not finite";
+  }
+  if (error.empty() && !(this->Scale > 0.0 && std::isfinite(this->Scale)))
+  {
+    return std::string(ScaleName) + " is not a finite number above 0";
+  }
+  return error;
+}
+
+//------------------------------------------------------------------------------
 std::string vtkCompressedVolume::ReadHidden(vtkImageData* image)
 {
   const auto read = [&](const char* name, vtkBlockMask& mask)
@@ -444,7 +492,7 @@ void vtkCompressedVolume::Write(vtkImageData* image) const
 {
   Remove(image);
   vtkFieldData* fields = image->GetFieldData();
-  const int version = this->HidesAny() ? FormatVersion : 1;
+  const int version = this->HidesAny() || this->HasUnits() ? FormatVersion : 1;
   StoreNumbers<vtkIntArray>(fields, VersionName, &version, 1);
   StoreNumbers<vtkIntArray>(fields, BlockBitsName, &this->BlockBits, 1);
   StoreNumbers<vtkTypeInt64Array>(fields, DimensionsName, this->Dimensions, 3);
@@ -455,6 +503,11 @@ void vtkCompressedVolume::Write(vtkImageData* image) const
   StoreNumbers<vtkIntArray>(
     fields, ExtentName, this->Extent[0] > this->Extent[1] ? image->GetExtent() : this->Extent, 6);
   StoreNumbers<vtkStringArray>(fields, ArrayNameName, &this->ArrayName, 1);
+  if (this->HasUnits())
+  {
+    StoreNumbers<vtkDoubleArray>(fields, OffsetName, &this->Offset, 1);
+    StoreNumbers<vtkDoubleArray>(fields, ScaleName, &this->Scale, 1);
+  }
   const auto store = [fields](const char* name, const vtkBlockMask& mask)
   {
     if (!mask.IsEmpty())
@@ -492,7 +545,9 @@ void vtkCompressedVolume::GetOwnExtent(vtkImageData* image, int own[6])
 {
   image->GetExtent(own);
   vtkUnsignedCharArray* ghosts = image->GetCellGhostArray();
-  if (!ghosts || image->GetNumberOfPoints() == 0)
+  // marks of another image say nothing about this one
+  if (!ghosts || image->GetNumberOfPoints() <= 0 ||
+    ghosts->GetNumberOfValues() != image->GetNumberOfCells())
   {
     return;
   }
@@ -511,13 +566,16 @@ void vtkCompressedVolume::GetOwnExtent(vtkImageData* image, int own[6])
   {
     --last;
   }
-  int low[3], high[3];
-  vtkStructuredData::ComputeCellStructuredCoordsForExtent(first - begin, image->GetExtent(), low);
-  vtkStructuredData::ComputeCellStructuredCoordsForExtent(last - begin, image->GetExtent(), high);
+  // not by vtkStructuredData, whose cells of a slice overflow 32 bits
+  vtkTypeInt64 low = first - begin, high = last - begin;
   for (int axis = 0; axis < 3; ++axis)
   {
-    own[2 * axis] = low[axis];
-    own[2 * axis + 1] = std::min(high[axis] + 1, own[2 * axis + 1]);
+    const vtkTypeInt64 start = own[2 * axis], end = own[2 * axis + 1];
+    const vtkTypeInt64 cells = std::max<vtkTypeInt64>(end - start, 1);
+    own[2 * axis] = static_cast<int>(start + low % cells);
+    own[2 * axis + 1] = static_cast<int>(std::min(start + high % cells + 1, end));
+    low /= cells;
+    high /= cells;
   }
 }
 
@@ -673,6 +731,8 @@ void vtkCompressedVolume::PrintSelf(ostream& os, vtkIndent indent)
   }
   os << "\n";
   os << indent << "Range: " << this->Range[0] << " " << this->Range[1] << "\n";
+  os << indent << "Offset: " << this->Offset << "\n";
+  os << indent << "Scale: " << this->Scale << "\n";
   os << indent << "ScalarType: " << this->ScalarType << "\n";
   os << indent << "ArrayName: " << this->ArrayName << "\n";
   os << indent << "Component: " << this->Component << "\n";

@@ -17,6 +17,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkZFPBlocks.h"
+#include "vtkZFPMemory.h"
 
 #include <algorithm>
 #include <cstring>
@@ -106,10 +107,12 @@ constexpr unsigned char HidingCell =
   vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::REFINEDCELL;
 
 //------------------------------------------------------------------------------
-// An image's ghost array, or null where no tuple has such a flag.
-vtkUnsignedCharArray* FindHiding(vtkUnsignedCharArray* ghosts, unsigned char hiding)
+// An image's ghost array, or null where no tuple has such a flag, or they are not one for each of
+// `number` points or cells.
+vtkUnsignedCharArray* FindHiding(
+  vtkUnsignedCharArray* ghosts, vtkIdType number, unsigned char hiding)
 {
-  if (!ghosts)
+  if (!ghosts || ghosts->GetNumberOfComponents() != 1 || ghosts->GetNumberOfTuples() != number)
   {
     return nullptr;
   }
@@ -298,10 +301,11 @@ vtkSmartPointer<vtkUnsignedCharArray> vtkImageZFPCompress::Part::HiddenSamples(
   vtkImageData* input) const
 {
   vtkSmartPointer<vtkUnsignedCharArray> flags =
-    FindHiding(input->GetPointGhostArray(), HidingPoint);
+    FindHiding(input->GetPointGhostArray(), input->GetNumberOfPoints(), HidingPoint);
   if (this->Association == vtkCompressedVolume::CellData)
   {
-    flags = HideCells(flags, FindHiding(input->GetCellGhostArray(), HidingCell), this->Input);
+    flags = HideCells(flags,
+      FindHiding(input->GetCellGhostArray(), input->GetNumberOfCells(), HidingCell), this->Input);
   }
   return flags ? vtkUnsignedCharArray::SafeDownCast(this->Samples(flags)) : nullptr;
 }
@@ -309,7 +313,8 @@ vtkSmartPointer<vtkUnsignedCharArray> vtkImageZFPCompress::Part::HiddenSamples(
 //------------------------------------------------------------------------------
 vtkBlockMask vtkImageZFPCompress::Part::HiddenCells(vtkImageData* input) const
 {
-  vtkUnsignedCharArray* flags = FindHiding(input->GetCellGhostArray(), HidingCell);
+  vtkUnsignedCharArray* flags =
+    FindHiding(input->GetCellGhostArray(), input->GetNumberOfCells(), HidingCell);
   if (!flags || this->Association == vtkCompressedVolume::CellData)
   {
     return vtkBlockMask();
@@ -439,15 +444,35 @@ bool vtkImageZFPCompress::Compress(
   hidden.Flags = flags ? flags->GetPointer(0) : nullptr;
   hidden.Hiding = part.Association == vtkCompressedVolume::CellData ? HidingCell : HidingPoint;
   hidden.NotFinite = this->MaskNonFinite;
+  vtkZFPBlocks::Units units = vtkZFPBlocks::Units::Find(samples, this->Component, hidden);
   const int blockBits = vtkCompressedVolume::BlockBitsForRate(this->Rate);
   vtkNew<vtkUnsignedCharArray> stream;
-  stream->SetNumberOfValues(vtkCompressedVolume::StreamBytesFor(dims, blockBits));
+  const vtkTypeInt64 bytes = vtkCompressedVolume::StreamBytesFor(dims, blockBits);
+  if (!vtkZFPMemory::Allocate(stream.Get(), bytes))
+  {
+    vtkErrorMacro("There is " << vtkZFPMemory::Objection("the stream", dims, bytes) << ".");
+    return false;
+  }
   vtkZFPBlocks blocks(dims, blockBits, stream->GetPointer(0), this->NumberOfThreads);
   vtkZFPBlocks::Summary summary;
-  if (!blocks.Encode(samples, this->Component, 0, blocks.GetNumberOfLayers(), hidden, summary,
-        vtkZFPBlocks::ReportOf(this)))
+  const auto encode = [&]()
+  {
+    summary = vtkZFPBlocks::Summary();
+    hidden.Mask = vtkBlockMask();
+    return blocks.Encode(samples, this->Component, 0, blocks.GetNumberOfLayers(), units, hidden,
+      summary, vtkZFPBlocks::ReportOf(this));
+  };
+  if (!encode())
   {
     return false;
+  }
+  if (summary.IsTiny())
+  {
+    units.Enlarge(summary.Magnitude());
+    if (!encode())
+    {
+      return false;
+    }
   }
   const std::string error = summary.GetObjection();
   if (!error.empty())
@@ -459,7 +484,10 @@ bool vtkImageZFPCompress::Compress(
   vtkNew<vtkCompressedVolume> volume;
   volume->SetBlockBits(blockBits);
   volume->SetDimensions(dims);
-  volume->SetRange(summary.GetRange().data());
+  volume->SetOffset(units.Offset);
+  volume->SetScale(units.Scale);
+  volume->SetRange(
+    volume->ToSample(summary.GetRange()[0]), volume->ToSample(summary.GetRange()[1]));
   volume->SetHiddenSamples(hidden.Mask);
   volume->SetHiddenCells(part.HiddenCells(input));
   volume->SetScalarType(array->GetDataType());

@@ -198,8 +198,10 @@ void TranslateLights(vtkRenderer* renderer, vtkMatrix4x4* worldToEye, SceneBlock
   }
 }
 
-// Isovalues that show, with their colours and opacities from the transfer functions.
-void TranslateIsovalues(vtkVolumeProperty* property, SceneBlock& scene)
+// Isovalues that show, in the stream's units, with their colours and opacities from the transfer
+// functions.
+void TranslateIsovalues(
+  vtkVolumeProperty* property, vtkCompressedVolume* compressed, SceneBlock& scene)
 {
   vtkContourValues* values = property->GetIsoSurfaceValues();
   int& count = scene.Surface[0];
@@ -221,8 +223,9 @@ void TranslateIsovalues(vtkVolumeProperty* property, SceneBlock& scene)
     {
       property->GetRGBTransferFunction()->GetColor(value, color);
     }
-    scene.Isovalues[count][0] = static_cast<float>(value);
-    scene.Isovalues[count][1] = static_cast<float>(value - scene.Isovalues[count][0]);
+    const double stored = compressed->ToStored(value);
+    scene.Isovalues[count][0] = static_cast<float>(stored);
+    scene.Isovalues[count][1] = static_cast<float>(stored - scene.Isovalues[count][0]);
     std::copy(color, color + 3, scene.Colors[count]);
     scene.Colors[count][3] = static_cast<float>(opacity);
     scene.Lighting[1] |= opacity < 1.0 ? 1 : 0;
@@ -331,12 +334,17 @@ SceneBlock TranslateScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMap
   SamplesToWorld(volume, image, compressed, indexToWorld);
   vtkMatrix4x4::Invert(indexToWorld, worldToIndex);
   vtkMatrix4x4::Multiply4x4(worldToEye, indexToWorld, eyeToIndex);
+  const double determinant = eyeToIndex->Determinant();
   eyeToIndex->Invert();
 
   TranslateRays(MakeEyeRays(projection, scene.Image[0], scene.Image[1]), eyeToIndex, scene);
+  if (!(determinant != 0.0)) // nothing was inverted
+  {
+    std::fill_n(scene.RayDirection[0], 3, std::numeric_limits<double>::quiet_NaN());
+  }
   camera->GetClippingRange(scene.RayRange);
   TranslatePart(image, compressed, scene);
-  TranslateIsovalues(volume->GetProperty(), scene);
+  TranslateIsovalues(volume->GetProperty(), compressed, scene);
   TranslateClipping(mapper, worldToIndex, scene);
   TranslateCropping(mapper, image, compressed, scene);
 
@@ -347,6 +355,16 @@ SceneBlock TranslateScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMap
   scene.DepthTerms[3] = static_cast<float>(-projection->GetElement(3, 2));
   TranslateLook(renderer, volume->GetProperty(), worldToEye, scene);
   return scene;
+}
+
+bool HasRays(const SceneBlock& scene)
+{
+  const double most = 1e200; // their sums are finite, too
+  const auto isSmall = [=](double value) { return std::abs(value) <= most; };
+  const double* const origin = scene.RayOrigin[0];
+  const double* const direction = scene.RayDirection[0];
+  return std::all_of(origin, origin + 12, isSmall) &&
+    std::all_of(direction, direction + 12, isSmall);
 }
 
 bool SameHits(const SceneBlock& a, const SceneBlock& b)

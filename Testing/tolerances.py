@@ -49,6 +49,15 @@ WEAK_GRADIENT = 0.01
 #: voxels where the differences are taken. In degrees.
 NORMAL_SPHERE_DEGREES = 57.3 * 1.2 * (1 / 6 + 3 / 8) * 1.5
 
+# --- values ---------------------------------------------------------------------------------------------------------------------------
+
+#: What float32 and 32 bits of zfp leave of values in units of the stream's, against their range.
+UNITS_RELATIVE = 2.0**-22
+
+#: Hits and gradients of a field of about -1 to 1, some tens of voxels wide, in two units, at 32 bits: 1e-7 of the range at a slope of a
+#: hundredth of it a voxel, or less where a ray grazes.
+UNITS_DEPTH = 1e-4
+
 # --- the caster itself -------------------------------------------------------------------------------------------------------
 
 #: Double precision against a closed form, in world units of a volume some ten units wide.

@@ -42,7 +42,8 @@ def compress(
     -------
     vtkmodules.vtkCommonDataModel.vtkImageData
         A compressed volume: the same geometry and no scalars, the stream in the field data.
-        Any VTI writer stores it.
+        Any VTI writer stores it. Where float32 cannot hold the values (small differences on a large
+        value, 1e300, denormals) the stream has units of its own, see `describe`.
 
     Raises
     ------
@@ -119,7 +120,7 @@ def find_array(image, array=None):
 
 
 def decompress(image, threads=0, progress=None):
-    """Decompress a compressed volume into float32 scalars.
+    """Decompress a compressed volume into scalars: float32, or float64 where its stream has units.
 
     Parameters
     ----------
@@ -200,7 +201,8 @@ def describe(image):
     -------
     dict
         ``rate`` (bits per sample), ``block_bits``, ``samples`` per axis, ``blocks`` in total,
-        ``stream_bytes``, ``range``, ``array``, ``component``, ``association`` ("point" or
+        ``stream_bytes``, ``range``, ``offset`` and ``scale`` (a value is offset + scale times what
+        the stream has), ``array``, ``component``, ``association`` ("point" or
         "cell") and ``scalar_type`` (VTK's number of the original type).
 
     Raises
@@ -218,6 +220,8 @@ def describe(image):
         "blocks": volume.GetNumberOfBlocks(),
         "stream_bytes": volume.GetStream().GetNumberOfValues(),
         "range": list(volume.GetRange()),
+        "offset": volume.GetOffset(),
+        "scale": volume.GetScale(),
         "array": volume.GetArrayName(),
         "component": volume.GetComponent(),
         "association": "cell" if volume.GetAssociation() else "point",

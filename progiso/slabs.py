@@ -21,7 +21,8 @@ def compress_slabs(
     """Compress a volume that is computed or read a few slices at a time.
 
     What is held in memory is one slab and the compressed stream. The result is bit for bit that of
-    `compress` on the whole volume.
+    `compress` on the whole volume, but for values that float32 cannot hold: units for them are
+    found where all are at hand.
 
     Parameters
     ----------

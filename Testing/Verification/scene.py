@@ -97,6 +97,7 @@ def check_depths(
     user=None,
     note="",
     volume=None,
+    level=None,
     sample=None,
     **options,
 ):
@@ -121,6 +122,8 @@ def check_depths(
     note : str
     volume : progiso.oracle.caster.Volume, optional
         What the caster casts; by default what libzfp decodes.
+    level : float, optional
+        The isovalue in that volume, where it is in other units.
     sample : int, optional
         How many rays of the image are held against the caster's, at random; by default all.
     options
@@ -143,7 +146,8 @@ def check_depths(
     if sample is not None:
         pixels = np.sort(np.random.default_rng(1).integers(0, depth.size, sample))
         depth = depth.ravel()[pixels]
-    expected = caster.cast(volume, isovalue, eye, size, tolerances.SLACK, clip, pixels)
+    level = isovalue if level is None else level
+    expected = caster.cast(volume, level, eye, size, tolerances.SLACK, clip, pixels)
     found = compare(depth, expected)
     defects = (
         "" if complete else "the image is not complete",
@@ -153,7 +157,12 @@ def check_depths(
         "" if (found.hits > 0) == hits else f"{found.hits} hits",
     )
     error, limit = found.worst
+    # beyond what is asked of depths, within what their float32 can tell
+    rounded = bool(error > tolerances.DEPTH_VOXELS)
     about = f"{found.hits} hits"
+    if rounded:
+        far = np.max(np.where(np.isfinite(depth), depth, 0) * expected.voxels)
+        about += f"; float32 rounds distances of {far:.2g} voxels"
     if found.grazing >= _TOLD:
         about += f", {found.grazing:.1%} of the rays graze and {found.differing:.2%} differ"
     return Outcome(
@@ -161,6 +170,7 @@ def check_depths(
         limit,
         milliseconds,
         note="; ".join(filter(None, (note, about))),
+        documented=rounded,
         defect="; ".join(filter(None, defects)),
     )
 
