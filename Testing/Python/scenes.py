@@ -84,9 +84,12 @@ class Scene:
     def clipping_range(self):
         return self.renderer.GetActiveCamera().GetClippingRange()
 
-    def render(self):
+    def render(self, clipping_range=None):
         """Render until the image is complete; return how many renders that took."""
-        self.renderer.ResetCameraClippingRange()
+        if clipping_range is None:
+            self.renderer.ResetCameraClippingRange()
+        else:
+            self.renderer.GetActiveCamera().SetClippingRange(clipping_range)
         for count in itertools.count(1):
             self.window.Render()
             if self.mapper.GetConverged():
@@ -95,9 +98,9 @@ class Scene:
         assert self.mapper.GetNumberOfGLErrors() == 0
         return count
 
-    def depth(self):
+    def depth(self, clipping_range=None):
         """Render; return the depth image, row 0 at the top."""
-        self.render()
+        self.render(clipping_range)
         return depth(self.mapper)
 
     def statistics(self):
@@ -113,9 +116,9 @@ class Scene:
         return vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars()).reshape(height, width, -1)[::-1, :, :3].copy()
 
 
-def least_budget(image, isovalue, camera, size=(160, 120)):
+def least_budget(image, isovalue, camera, size=(160, 120), **settings):
     """Return the least memory budget that a lit scene can work with, as the error says that one byte is too little."""
-    scene = Scene(image, isovalue, camera, size, lit=True, MemoryBudget=1)
+    scene = Scene(image, isovalue, camera, size, lit=True, **{**settings, "MemoryBudget": 1})
     with vtk_messages() as messages:
         scene.window.Render()
     return int(re.search(r"at least (\d+) bytes", "".join(messages))[1])
