@@ -1,6 +1,9 @@
-"""Every tolerance that a test uses, and why it is what it is. Nothing else in Testing/ names one."""
+"""Every tolerance that a test uses, and why it is what it is. Nothing else in Testing/ names one.
 
-from oracle.caster import Slack
+Installed as ``progiso.verification.tolerances``, too.
+"""
+
+from progiso.oracle.caster import Slack
 
 # --- depth against the double-precision caster ----------------------------------------------------------------------------
 

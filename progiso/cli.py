@@ -18,6 +18,7 @@ from .data import GENERATORS, SCANS, compressed, fetch
 from .io import COMPRESSED_SUFFIXES, PLAIN_SUFFIXES
 from .progress import progress_bar
 from .surface import SURFACE_SUFFIXES
+from .verification.command import add_verify
 
 _COMPRESSIBLE = ".vti .mha .mhd .nrrd .nii .nii.gz .vtk, name_WxHxD_type.raw"
 _READABLE = ".vti .mha .mhd .nrrd .nii .nii.gz .vtk .zfp, name_WxHxD_type.raw"
@@ -82,6 +83,8 @@ def _parser():
     _add_data(commands)
     bench = _add_command(commands, "bench", None, "measure time, memory and error beside VTK's own")
     add_bench(bench, _size)
+    about = "measure error and time on extreme fields and views, beside a caster in double precision"
+    add_verify(_add_command(commands, "verify", None, about))
     return parser
 
 

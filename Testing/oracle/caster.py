@@ -67,6 +67,14 @@ class Volume:
         matrix[:3, 3] = np.asarray(origin, float) + matrix[:3, :3] @ (np.asarray(extent_start, float) + shift)
         return cls(np.asarray(values), np.asarray(user, float) @ matrix)
 
+    @classmethod
+    def from_image(cls, values, image, user=np.eye(4), shift=0.0):
+        """Place `values` where a ``vtkImageData`` lies; `user` and `shift` as in `from_geometry`."""
+        direction = image.GetDirectionMatrix()
+        matrix = [[direction.GetElement(r, c) for c in range(3)] for r in range(3)]
+        start = image.GetExtent()[::2]
+        return cls.from_geometry(values, image.GetOrigin(), image.GetSpacing(), matrix, start, user, shift)
+
 
 @dataclass(frozen=True)
 class Camera:
