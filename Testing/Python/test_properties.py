@@ -16,7 +16,7 @@ import tolerances
 from hypothesis import given
 from hypothesis import strategies as st
 from oracle.caster import Camera, Volume, cast
-from progiso.benchmarks import cracks
+from progiso.verification import cracks
 from scenes import CACHED, Scene, check_depth, least_budget
 from support import blobs, make_image, noise, reference_values, values_of
 

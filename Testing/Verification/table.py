@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from . import stiff
+from . import cracks, stiff
 from .case import row_of
 
 SECTIONS = {
     "Stiff fields": stiff.CASES,
+    "Cracks": cracks.CASES,
 }
 
 

@@ -10,23 +10,25 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
+from functools import partial
 from time import perf_counter
 
 import numpy as np
 
+from ..benchmarks.fields import samples
+from ..benchmarks.ours import Isosurface
 from ..camera import Camera
-from ..compression import compress, decompress
-from ..geometry import image_from_array
+from ..compression import decompress
 from ..oracle import caster
-from .fields import samples
-from .ours import Isosurface
+from .case import Case, Outcome
+from .scene import compressed
 
 ISOVALUE = 0.0
 
 #: Bits per sample that every kind of field is closed at: the thin skin needs all.
 RATES = {"noise": (8.0, 16.0, 32.0), "smooth": (4.0, 8.0), "hollow": (8.0, 32.0), "thin": (32.0,)}
 
-#: How the work is divided: `ours.Isosurface`'s arguments, and the budget in units of the least.
+#: How the work is divided: `Isosurface`'s arguments, and the budget in units of the least.
 DIVISIONS = (
     ({}, None),
     ({"cached": True}, None),
@@ -37,8 +39,8 @@ DIVISIONS = (
 #: Rays that come closer than this to an edge of a box, in voxels, are not judged.
 _MARGIN = 1e-4
 
-#: Of the rays that go wrong so many are described.
-_DESCRIBED = 8
+#: Images of a kind of field, two of each volume.
+_IMAGES = 24
 
 #: Clipping planes of a camera in the core, in voxels.
 CLIPPING_INSIDE = (0.01, 1e4)
@@ -231,70 +233,81 @@ def _meets(origins, directions, low, high):
 # ---- measuring
 
 
-def measure_cracks(rays, size=(1024, 1024), side=96, seed=0, progress=None):
+@dataclass
+class _Count:
+    """What has been cast so far."""
+
+    rays: int = 0
+    wrong: int = 0
+    images: int = 0
+    volumes: int = 0
+    slowest_ms: float = 0.0
+    first: str = ""
+
+
+def count_cracks(kind, rays, side=64, seed=0):
     """Cast rays at closed surfaces, from inside and outside, and count those that go wrong.
 
-    Kinds of fields, rates and the ways to divide the work take turns.
+    Rates and the ways to divide the work take turns. The images are as large as it takes to have
+    about `_IMAGES` of them, at most 2048 pixels wide.
 
     Parameters
     ----------
+    kind : str
+        See `closed_field`.
     rays : int
         At least so many are judged.
-    size : tuple of int
-        Width and height of the images.
     side : int
         Largest side of the volumes in samples, at least 18.
     seed : int
         Of everything random.
-    progress : callable, optional
-        Called with the fraction done, from 0 to 1.
 
     Returns
     -------
-    dict
-        ``rays`` that were judged, ``missed``, ``invented``, ``images``, ``volumes``, ``seconds``
-        of wall clock, ``render_seconds`` of it spent in rendering, and ``wrong``: the first few
-        rays that went wrong, each with all that it takes to repeat it.
+    case.Outcome
+        In wrong rays; the note tells the first that went wrong, by all that it takes to repeat it.
     """
-    start = perf_counter()
-    total = dict(rays=0, missed=0, invented=0, images=0, volumes=0, render_seconds=0.0, wrong=[])
-    turns = itertools.cycle([(kind, rate) for kind in RATES for rate in RATES[kind]])
-    for number, (kind, rate) in enumerate(turns):
-        if total["rays"] >= rays:
+    start, count = perf_counter(), _Count()
+    width = int(np.clip(np.sqrt(rays / _IMAGES), 32, 2048))
+    turns = itertools.product(DIVISIONS, RATES[kind])
+    for number, (division, rate) in enumerate(itertools.cycle(turns)):
+        if count.rays >= rays:
             break
-        arguments, share = DIVISIONS[number % len(DIVISIONS)]
         rng = np.random.default_rng([seed, number])
         shape = tuple(map(int, rng.integers(side // 2, side + 1, 3)))
         field = closed_field(kind, shape, rng)
-        about = {"number": number, "kind": kind, "rate": rate, "shape": shape, **arguments}
-        _measure_volume(field, rate, size, arguments, share, rng, about, total)
-        if progress is not None:
-            progress(min(1.0, total["rays"] / rays))
-    return {**total, "seconds": perf_counter() - start}
+        about = f"volume {number} of seed {seed}, {shape}, rate {rate:g}, {division}"
+        _look_around(field, rate, (width, width), division, rng, about, count)
+    seconds = perf_counter() - start
+    note = f"{count.images} images of {count.volumes} volumes, {seconds:.1f} s in all"
+    unit = f"of {count.rays} rays"
+    return Outcome(
+        count.wrong, 0, count.slowest_ms, unit, "; ".join(filter(None, (note, count.first)))
+    )
 
 
-def _measure_volume(field, rate, size, arguments, share, rng, about, total):
-    """Look at a volume from all its cameras; add to the totals."""
-    image = compressed_field(field, rate)
-    view = Isosurface(image, ISOVALUE, size, **arguments)
+def _look_around(field, rate, size, division, rng, about, count):
+    """Look at a volume from inside and outside; add to the count."""
+    arguments, share = division
+    view = Isosurface(compressed_field(field, rate), ISOVALUE, size, **arguments)
     for place in (camera_inside, camera_outside):
         camera = place(field, rng)
         view.look(camera)
-        vtk_camera = view.renderer.GetActiveCamera()
+        seen = view.renderer.GetActiveCamera()
         if place is camera_inside:
-            vtk_camera.SetClippingRange(CLIPPING_INSIDE)
+            seen.SetClippingRange(CLIPPING_INSIDE)
         if share is not None:
             view.mapper.SetMemoryBudget(int(share * _least_budget(view)))
-        total["render_seconds"] += 1e-3 * view.render()
-        missed, invented, judged = slipped(view.depth(), field, caster.Camera.from_vtk(vtk_camera))
-        total["rays"] += judged
-        total["missed"] += int(missed.sum())
-        total["invented"] += int(invented.sum())
-        total["images"] += 1
-        for row, column in np.argwhere(missed | invented)[: _DESCRIBED - len(total["wrong"])]:
-            pixel = {"row": int(row), "column": int(column)}
-            total["wrong"].append({**about, "camera": camera.to_dict(), **pixel})
-    total["volumes"] += 1
+        count.slowest_ms = max(count.slowest_ms, view.render())
+        missed, invented, judged = slipped(view.depth(), field, caster.Camera.from_vtk(seen))
+        wrong = missed | invented
+        if wrong.any() and not count.first:
+            row, column = np.argwhere(wrong)[0]
+            count.first = f"first wrong: row {row}, column {column}, {camera}, {about}"
+        count.rays += judged
+        count.wrong += int(wrong.sum())
+        count.images += 1
+    count.volumes += 1
     view.close()
 
 
@@ -313,8 +326,22 @@ def compressed_field(field, rate):
     ValueError
         When the rate is too low for that.
     """
-    plain = image_from_array(field.values.ravel(), field.values.shape[::-1])
-    image = compress(plain, rate)
+    image = compressed(field.values, rate)
     if not field.is_closed(samples(decompress(image))):
         raise ValueError(f"at {rate:g} bits per sample the field is no longer closed")
     return image
+
+
+def _case(kind, settings):
+    return count_cracks(kind, settings.rays // len(RATES))
+
+
+CASES = tuple(
+    Case(name, partial(_case, kind))
+    for kind, name in {
+        "noise": "no crack in white noise",
+        "smooth": "no crack in a smooth field",
+        "hollow": "no crack in a box of noise",
+        "thin": "no crack in a sheet of one sample, 1e-6 deep",
+    }.items()
+)
