@@ -76,6 +76,7 @@ def _parser():
     parser.add_argument("--version", action="version", version=f"progiso {progiso.__version__}")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
     _add_compress(commands)
+    _add_rate(commands)
     _add_decompress(commands)
     _add_info(commands)
     _add_contour(commands)
@@ -109,6 +110,11 @@ def _add_array(command):
     command.add_argument(
         "--rate", type=float, default=8.0, help="bits per sample, in (0, 32] (default: %(default)g)"
     )
+    _add_which(command)
+
+
+def _add_which(command):
+    """What of a plain image."""
     command.add_argument("--array", help="name of the array (default: the active scalars)")
     command.add_argument("--component", type=int, default=0, help="component of the array")
 
@@ -123,6 +129,21 @@ def _add_compress(commands):
         "--appended", action="store_true",
         help="a .vti that reads ten times faster, though not in Debian 12's ParaView",
     )  # fmt: skip
+
+
+def _add_rate(commands):
+    description = "find the least rate at which no sample is off by more than a tolerance"
+    command = _add_command(commands, "rate", _rate, description)
+    _add_input(command)
+    command.add_argument(
+        "--tolerance", type=float, required=True, metavar="T",
+        help="largest error of a sample, above 0, in the image's units",
+    )  # fmt: skip
+    command.add_argument(
+        "--relative", action="store_true",
+        help="the tolerance is a part of the values' range, 0.001 of it, say",
+    )  # fmt: skip
+    _add_which(command)
 
 
 def _add_decompress(commands):
@@ -155,8 +176,7 @@ def _add_contour(commands):
         "--rate", type=float,
         help="compress a plain image first, to this many bits per sample, in (0, 32]",
     )  # fmt: skip
-    command.add_argument("--array", help="name of the array (default: the active scalars)")
-    command.add_argument("--component", type=int, default=0, help="component of the array")
+    _add_which(command)
     command.add_argument("--no-normals", action="store_true", help="points and triangles alone")
     command.add_argument("--threads", type=int, default=0, help="0 (default) for one per core")
 
@@ -322,6 +342,15 @@ def _compress(parsed):
     about = progiso.describe(volume)
     stream, rate = about["stream_bytes"], about["rate"]
     print(f"{parsed.out}: {stream} bytes of compressed samples, {rate:g} bits per sample")
+
+
+def _rate(parsed):
+    image = _read(parsed)
+    with progress_bar("Trying rates") as progress:
+        rate = progiso.least_rate(
+            image, parsed.tolerance, parsed.relative, parsed.array, parsed.component, progress
+        )
+    print(f"{rate:.9g}")  # of 64ths all digits, for `compress --rate`
 
 
 def _decompress(parsed):
