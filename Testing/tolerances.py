@@ -28,6 +28,10 @@ GRAZING_FRACTION = 0.02
 #: ... and on white noise, where every other cell holds a tangent.
 GRAZING_FRACTION_NOISE = 0.10
 
+#: ... and where a view looks at nothing but a singular point of the field: rays through roots of second and third order. Those within
+#: a hundredth of a voxel of it cannot be told from it.
+GRAZING_FRACTION_SINGULAR = 0.03
+
 # --- the caster itself -------------------------------------------------------------------------------------------------------
 
 #: Double precision against a closed form, in world units of a volume some ten units wide.

@@ -5,7 +5,7 @@ import contextlib
 import numpy as np
 from oracle import zfp_reference
 from oracle.caster import Volume
-from progiso.verification.fields import blobs, make_image, marschner_lobb, noise  # noqa: F401 (for all tests)
+from progiso.verification.fields import blobs, make_image, marschner_lobb, noise, values_of  # noqa: F401 (for all tests)
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 
@@ -20,13 +20,6 @@ def peak():
 """
 
 # --- images ------------------------------------------------------------------------------------------------------------------
-
-
-def values_of(image):
-    """Return an image's scalars [z, y, x], of points or else of cells."""
-    points = image.GetPointData().GetScalars()
-    size = np.array(image.GetDimensions()) - (0 if points else 1)
-    return vtk_to_numpy(points or image.GetCellData().GetScalars()).reshape(size[::-1])
 
 
 def metadata(compressed, name):

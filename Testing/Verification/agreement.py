@@ -23,12 +23,15 @@ class Agreement:
         What is granted, in voxels: `tolerances.DEPTH_VOXELS`, and the rounding of a float32 depth.
     grazing : float
         Part of the rays that can hit for which rounding decides where, or whether.
+    differing : float
+        Part of them for which it has decided otherwise than in the caster's own arithmetic.
     hits : int
     """
 
     error: np.ndarray
     allowed: np.ndarray
     grazing: float
+    differing: float
     hits: int
 
     @property
@@ -69,8 +72,17 @@ def compare(depth, expected):
     off = np.abs(_difference(depth, expected.depth, close))
     error = np.maximum(np.maximum(before, behind), np.maximum(off, 0.0)) * expected.voxels
     rounding = tolerances.DEPTH_RELATIVE * np.where(hit, depth, 0.0) * expected.voxels
-    grazing = float(np.mean(~close[possible])) if possible.any() else 0.0
-    return Agreement(error, tolerances.DEPTH_VOXELS + rounding, grazing, int(hit.sum()))
+    allowed = tolerances.DEPTH_VOXELS + rounding
+    both = hit & np.isfinite(expected.depth)
+    same = (hit == np.isfinite(expected.depth)) & (
+        np.abs(_difference(depth, expected.depth, both)) * expected.voxels <= allowed
+    )
+    return Agreement(error, allowed, _part(~close, possible), _part(~same, possible), int(hit.sum()))
+
+
+def _part(chosen, among):
+    """Part of some rays that is chosen; 0 of none."""
+    return float(np.mean(chosen[among])) if among.any() else 0.0
 
 
 def _difference(a, b, where):

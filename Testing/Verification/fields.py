@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
 
@@ -60,3 +60,10 @@ def make_image(
     array.SetName(name)
     (image.GetCellData() if cells else image.GetPointData()).SetScalars(array)
     return image
+
+
+def values_of(image):
+    """Return an image's scalars [z, y, x], of points or else of cells."""
+    points = image.GetPointData().GetScalars()
+    size = np.array(image.GetDimensions()) - (0 if points else 1)
+    return vtk_to_numpy(points or image.GetCellData().GetScalars()).reshape(size[::-1])

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 
-from ..benchmarks.fields import samples
 from ..benchmarks.ours import Isosurface
 from ..benchmarks.view import opposite
 from ..camera import Camera, orbit_camera
@@ -16,7 +15,10 @@ from ..oracle import caster
 from . import tolerances
 from .agreement import compare
 from .case import Outcome, worst_of
-from .fields import make_image
+from .fields import make_image, values_of
+
+#: From this part of grazing rays on it is told, and how many of all rays have not the caster's own hit.
+_TOLD = 1e-3
 
 #: Bits a sample where a case is not of a rate: what is decoded is the field's to the last places.
 RATE = 32
@@ -32,7 +34,7 @@ def decoded(image, user=None):
     plain = decompress(image)
     cells = plain.GetPointData().GetScalars() is None
     matrix = np.eye(4) if user is None else np.asarray(user, float)
-    return caster.Volume.from_image(samples(plain), plain, matrix, 0.5 if cells else 0.0)
+    return caster.Volume.from_image(values_of(plain), plain, matrix, 0.5 if cells else 0.0)
 
 
 class Picture(Isosurface):
@@ -140,7 +142,9 @@ def check_depths(
         "" if (found.hits > 0) == hits else f"{found.hits} hits",
     )
     error, limit = found.worst
-    about = f"{found.hits} hits, {found.grazing:.2%} graze"
+    about = f"{found.hits} hits"
+    if found.grazing >= _TOLD:
+        about += f", {found.grazing:.1%} of the rays graze and {found.differing:.2%} differ"
     return Outcome(
         error,
         limit,

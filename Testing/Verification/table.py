@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from . import cracks, stiff
+from . import cracks, stiff, values
 from .case import row_of
 
 SECTIONS = {
     "Stiff fields": stiff.CASES,
+    "Values": values.CASES,
     "Cracks": cracks.CASES,
 }
 
