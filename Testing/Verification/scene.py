@@ -94,6 +94,7 @@ def check_depths(
     user=None,
     note="",
     volume=None,
+    sample=None,
     **options,
 ):
     """Render an image, time it, and hold its depths against the caster.
@@ -117,6 +118,8 @@ def check_depths(
     note : str
     volume : progiso.oracle.caster.Volume, optional
         What the caster casts; by default what libzfp decodes.
+    sample : int, optional
+        Of a large image, how many random pixels the caster sees; by default all.
     options
         Of `Picture`.
 
@@ -133,7 +136,12 @@ def check_depths(
     finally:
         view.close()
     volume = volume or decoded(image, user)
-    found = compare(depth, caster.cast(volume, isovalue, eye, size, tolerances.SLACK, clip))
+    pixels = None
+    if sample is not None:
+        pixels = tuple(np.random.default_rng(0).integers(0, (size[1], size[0]), (sample, 2)).T)
+        depth = depth[pixels]
+    expected = caster.cast(volume, isovalue, eye, size, tolerances.SLACK, clip, pixels)
+    found = compare(depth, expected)
     defects = (
         "" if complete else "the image is not complete",
         f"{errors} OpenGL errors" if errors else "",

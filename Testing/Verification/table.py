@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from . import cracks, stiff, values
+from . import compression, cracks, geometry, stiff, values
 from .case import row_of
 
 SECTIONS = {
     "Stiff fields": stiff.CASES,
     "Values": values.CASES,
+    "Geometry": geometry.CASES,
+    "Compression": compression.CASES,
     "Cracks": cracks.CASES,
 }
 

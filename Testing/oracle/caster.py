@@ -102,13 +102,17 @@ class Camera:
         """Unit vector across the image plane."""
         return _unit(np.subtract(self.focal_point, self.position, dtype=float))
 
-    def rays(self, size):
-        """Return origins and unit directions, each [height * width, 3], for an image of `size` (width, height)."""
+    def rays(self, size, pixels=None):
+        """Return origins and unit directions, each [height * width, 3], for an image of `size` (width, height).
+
+        With `pixels`, arrays of rows and of columns, those of these alone.
+        """
         width, height = size
         position, forward = np.asarray(self.position, float), self.forward
         right = _unit(np.cross(forward, np.asarray(self.view_up, float)))
         up = np.cross(right, forward)
-        x, y = np.meshgrid((np.arange(width) + 0.5) / width * 2 - 1, 1 - (np.arange(height) + 0.5) / height * 2)
+        rows, columns = np.indices((height, width)) if pixels is None else pixels
+        x, y = (columns + 0.5) / width * 2 - 1, 1 - (rows + 0.5) / height * 2
         offset = x.reshape(-1, 1) * (width / height) * right + y.reshape(-1, 1) * up
         if self.parallel_scale is not None:
             return position + self.parallel_scale * offset, np.broadcast_to(forward, offset.shape)
@@ -136,7 +140,7 @@ class Cast:
     voxels: np.ndarray
 
 
-def cast(volume, isovalue, camera, size, slack=Slack(), clip=(0.0, np.inf)):
+def cast(volume, isovalue, camera, size, slack=Slack(), clip=(0.0, np.inf), pixels=None):
     """Cast one ray through the centre of each of the image's pixels.
 
     Parameters
@@ -149,15 +153,17 @@ def cast(volume, isovalue, camera, size, slack=Slack(), clip=(0.0, np.inf)):
     slack : Slack
     clip : (float, float)
         distances of the clipping planes, across the view, between which the rays go.
+    pixels : (array of int, array of int), optional
+        Rows and columns of those that matter; the result is as long as they are.
 
     Returns
     -------
     Cast
     """
-    origins, directions = camera.rays(size)
+    origins, directions = camera.rays(size, pixels)
     across = directions @ camera.forward
     result = cast_rays(volume, isovalue, origins, directions, slack, clip[0] / across, clip[1] / across)
-    shape = (size[1], size[0])
+    shape = (size[1], size[0]) if pixels is None else np.shape(pixels[0])
     return Cast(*(getattr(result, name).reshape(shape) for name in ("depth", "early", "late", "voxels")))
 
 
