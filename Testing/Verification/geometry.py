@@ -21,14 +21,13 @@ _SHEARED = np.array([[1, 0.4, 0], [0, 1, 0.2], [0.1, 0, 1]])
 _MIRRORED = np.diag([-1.0, 1, 1])
 
 
-def _around(image, count=3):
+def _around(image):
     """Cameras about an image, or where it is long, about its middle; one in parallel projection."""
     low, high = np.array(image.GetBounds()).reshape(3, 2).T
     reach = np.full(3, np.median(high - low) / 2)
     bounds = np.stack([(low + high) / 2 - reach, (low + high) / 2 + reach]).T.ravel()
-    cameras = [orbit_camera(bounds, i, count) for i in range(count)]
-    reach = np.linalg.norm(np.subtract(cameras[-1].position, cameras[-1].focal_point))
-    return [*cameras[:-1], parallel(cameras[-1], reach / 3)]
+    cameras = [orbit_camera(bounds, i, 4) for i in (1, 2, 3)]
+    return [*cameras[:2], parallel(cameras[2], 1.5 * reach[0])]
 
 
 def _placed(settings, shape=_SHAPE, **geometry):
@@ -151,7 +150,7 @@ def _surface_near(values, point):
 
 def _image(size, settings):
     image = compressed(blobs(_SHAPE, 7))
-    return check_views(settings, image, (_ISOVALUE,), _around(image, 4), size=size)
+    return check_views(settings, image, (_ISOVALUE,), _around(image), size=size)
 
 
 def _largest_image(settings):
