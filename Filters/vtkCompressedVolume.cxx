@@ -38,12 +38,14 @@ const char* const ArrayNameName = "ProgIso.ZFP.ArrayName";
 const char* const ComponentName = "ProgIso.ZFP.Component";
 const char* const AssociationName = "ProgIso.ZFP.Association";
 const char* const ExtentName = "ProgIso.ZFP.Extent";
+const char* const OffsetName = "ProgIso.ZFP.Offset";
+const char* const ScaleName = "ProgIso.ZFP.Scale";
 const char* const HiddenSamplesName = "ProgIso.ZFP.HiddenSamples";
 const char* const HiddenCellsName = "ProgIso.ZFP.HiddenCells";
 
 const char* const AllNames[] = { VersionName, StreamName, BlockBitsName, DimensionsName, RangeName,
-  ScalarTypeName, ArrayNameName, ComponentName, AssociationName, ExtentName, HiddenSamplesName,
-  HiddenCellsName };
+  ScalarTypeName, ArrayNameName, ComponentName, AssociationName, ExtentName, OffsetName, ScaleName,
+  HiddenSamplesName, HiddenCellsName };
 
 //------------------------------------------------------------------------------
 // Values of a field data array; an error sentence when it is not `count` integers (or numbers).
@@ -233,6 +235,8 @@ void vtkCompressedVolume::Clear()
     this->Extent[i] = -(i % 2);
   }
   std::fill_n(this->Range, 2, 0.0);
+  this->Offset = 0.0;
+  this->Scale = 1.0;
   this->ScalarType = 0;
   this->ArrayName.clear();
   this->Component = 0;
@@ -271,6 +275,10 @@ std::string vtkCompressedVolume::Check(vtkImageData* image)
   if (error.empty())
   {
     error = this->ReadStreamAndName(image);
+  }
+  if (error.empty())
+  {
+    error = this->ReadUnits(image);
   }
   return error.empty() ? this->ReadHidden(image) : error;
 }
@@ -421,6 +429,34 @@ std::string vtkCompressedVolume::ReadStreamAndName(vtkImageData* image)
 }
 
 //------------------------------------------------------------------------------
+std::string vtkCompressedVolume::ReadUnits(vtkImageData* image)
+{
+  vtkFieldData* fields = image->GetFieldData();
+  const auto read = [fields](const char* name, double& value)
+  {
+    vtkDataArray* array = nullptr;
+    std::string error;
+    if (fields->HasArray(name))
+    {
+      error = GetNumericArray(fields, name, 1, false, array);
+      value = error.empty() ? array->GetVariantValue(0).ToDouble() : value;
+    }
+    return error;
+  };
+  std::string error = read(OffsetName, this->Offset);
+  error = error.empty() ? read(ScaleName, this->Scale) : error;
+  if (error.empty() && !std::isfinite(this->Offset))
+  {
+    return std::string(OffsetName) + " is not finite";
+  }
+  if (error.empty() && !(this->Scale > 0.0 && std::isfinite(this->Scale)))
+  {
+    return std::string(ScaleName) + " is not a finite number above 0";
+  }
+  return error;
+}
+
+//------------------------------------------------------------------------------
 std::string vtkCompressedVolume::ReadHidden(vtkImageData* image)
 {
   const auto read = [&](const char* name, vtkBlockMask& mask)
@@ -444,7 +480,7 @@ void vtkCompressedVolume::Write(vtkImageData* image) const
 {
   Remove(image);
   vtkFieldData* fields = image->GetFieldData();
-  const int version = this->HidesAny() ? FormatVersion : 1;
+  const int version = this->HidesAny() || this->HasUnits() ? FormatVersion : 1;
   StoreNumbers<vtkIntArray>(fields, VersionName, &version, 1);
   StoreNumbers<vtkIntArray>(fields, BlockBitsName, &this->BlockBits, 1);
   StoreNumbers<vtkTypeInt64Array>(fields, DimensionsName, this->Dimensions, 3);
@@ -455,6 +491,11 @@ void vtkCompressedVolume::Write(vtkImageData* image) const
   StoreNumbers<vtkIntArray>(
     fields, ExtentName, this->Extent[0] > this->Extent[1] ? image->GetExtent() : this->Extent, 6);
   StoreNumbers<vtkStringArray>(fields, ArrayNameName, &this->ArrayName, 1);
+  if (this->HasUnits())
+  {
+    StoreNumbers<vtkDoubleArray>(fields, OffsetName, &this->Offset, 1);
+    StoreNumbers<vtkDoubleArray>(fields, ScaleName, &this->Scale, 1);
+  }
   const auto store = [fields](const char* name, const vtkBlockMask& mask)
   {
     if (!mask.IsEmpty())
@@ -673,6 +714,8 @@ void vtkCompressedVolume::PrintSelf(ostream& os, vtkIndent indent)
   }
   os << "\n";
   os << indent << "Range: " << this->Range[0] << " " << this->Range[1] << "\n";
+  os << indent << "Offset: " << this->Offset << "\n";
+  os << indent << "Scale: " << this->Scale << "\n";
   os << indent << "ScalarType: " << this->ScalarType << "\n";
   os << indent << "ArrayName: " << this->ArrayName << "\n";
   os << indent << "Component: " << this->Component << "\n";

@@ -6,13 +6,13 @@
  *
  * A compressed volume is a vtkImageData with the geometry of the original (extent, spacing, origin,
  * direction matrix), without the compressed array, and with these arrays in its field data
- * (version 1 of the format; version 2 where something is hidden):
+ * (version 1 of the format; version 2 where something is hidden, or the stream has its own units):
  *
  * - ProgIso.ZFP.Version (int): 1 or 2
  * - ProgIso.ZFP.Stream (unsigned char): fixed-rate zfp stream, see below
  * - ProgIso.ZFP.BlockBits (int): bits per block of 4x4x4 samples, 9..2048
  * - ProgIso.ZFP.Dimensions (3 64-bit integers): samples per axis (points, or cells for cell data)
- * - ProgIso.ZFP.Range (2 doubles): smallest and largest sample, as float32
+ * - ProgIso.ZFP.Range (2 doubles): smallest and largest sample, as the stream's float32 has them
  * - ProgIso.ZFP.ScalarType (int): VTK type of the original array
  * - ProgIso.ZFP.ArrayName (string): name of the original array
  * - ProgIso.ZFP.Component (int): component of the original array
@@ -20,6 +20,9 @@
  * - ProgIso.ZFP.Extent (6 integers, optional): the image extent that the stream covers
  * - ProgIso.ZFP.HiddenSamples, ProgIso.ZFP.HiddenCells (pairs of unsigned 64-bit integers,
  *   optional): what is hidden, as runs of blocks, see vtkBlockMask: first block, bits
+ *
+ * - ProgIso.ZFP.Offset, ProgIso.ZFP.Scale (double, optional): a sample is Offset + Scale times what
+ *   the stream has, in double precision; 0 and 1 where they are missing
  *
  * Hidden samples have no values: what the stream has in their place is of no account. There is no
  * isosurface in a cell of the interpolant that has a hidden corner, or that is itself hidden.
@@ -67,7 +70,7 @@ public:
 
   enum
   {
-    FormatVersion = 2,       ///< newest that is read; written where something is hidden, else 1
+    FormatVersion = 2,       ///< newest that is read; written where it takes it, else 1
     MinimumBlockBits = 9,    ///< sign-less float block: 1 bit "not empty" + 8 bits exponent
     MaximumBlockBits = 2048, ///< 32 bits per sample
   };
@@ -194,11 +197,26 @@ public:
 
   ///@{
   /**
-   * Smallest and largest visible sample of the original array, as float32; zeros where all are
-   * hidden. Decoded samples may lie a little outside (lossy compression).
+   * Smallest and largest visible sample of the original array, as the stream's float32 has them;
+   * zeros where all are hidden. Decoded samples may lie a little outside (lossy compression).
    */
   vtkGetVector2Macro(Range, double);
   vtkSetVector2Macro(Range, double);
+  ///@}
+
+  ///@{
+  /**
+   * The stream's units: a sample is Offset + Scale times what the stream has. 0 and 1, but where
+   * float32 cannot hold the samples themselves: small differences on a large value, or values
+   * beyond what it or zfp takes. Scale is above 0.
+   */
+  vtkGetMacro(Offset, double);
+  vtkSetMacro(Offset, double);
+  vtkGetMacro(Scale, double);
+  vtkSetMacro(Scale, double);
+  bool HasUnits() const { return this->Offset != 0.0 || this->Scale != 1.0; }
+  double ToSample(double stored) const { return this->Offset + this->Scale * stored; }
+  double ToStored(double sample) const { return (sample - this->Offset) / this->Scale; }
   ///@}
 
   ///@{
@@ -222,7 +240,6 @@ public:
   vtkSetMacro(Association, int);
   ///@}
 
-  ///@{
   ///@{
   /**
    * Samples that are hidden, and, of point data, cells of the image; and what follows for the cells
@@ -256,6 +273,7 @@ private:
   std::string ReadNumbers(vtkImageData* image);
   std::string ReadStreamAndName(vtkImageData* image);
   std::string ReadHidden(vtkImageData* image);
+  std::string ReadUnits(vtkImageData* image);
   std::string CheckGeometry(vtkImageData* image);
   void FindExtent(vtkImageData* image, const vtkTypeInt64 dims[3]);
   void CopyBlocks(const int first[3], const int count[3], vtkUnsignedCharArray* target) const;
@@ -264,6 +282,8 @@ private:
   int Dimensions[3] = { 0, 0, 0 };
   int Extent[6] = { 0, -1, 0, -1, 0, -1 };
   double Range[2] = { 0.0, 0.0 };
+  double Offset = 0.0;
+  double Scale = 1.0;
   int ScalarType = 0;
   std::string ArrayName;
   int Component = 0;

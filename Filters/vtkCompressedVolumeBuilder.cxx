@@ -13,6 +13,7 @@
 #include "vtkZFPBlocks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 vtkStandardNewMacro(vtkCompressedVolumeBuilder);
@@ -88,6 +89,12 @@ bool vtkCompressedVolumeBuilder::Start(const int dims[3], double rate)
           << dims[2] << " samples, at least 2 along each axis are needed.";
     return this->Refuse(error.str());
   }
+  if (!std::isfinite(this->Offset) || !std::isfinite(this->Scale) || !(this->Scale > 0.0))
+  {
+    error << "The stream's units are an offset of " << this->Offset << " and a scale of "
+          << this->Scale << ": both must be finite, and the latter above 0.";
+    return this->Refuse(error.str());
+  }
   this->Volume = std::make_unique<Work>(dims, blockBits);
   this->ErrorMessage.clear();
   return true;
@@ -154,7 +161,8 @@ bool vtkCompressedVolumeBuilder::AddSlab(vtkDataArray* samples, int component)
     volume.Dimensions, volume.BlockBits, volume.Stream->GetPointer(0), this->NumberOfThreads);
   const int first = volume.Slices / 4;
   volume.Hidden.NotFinite = this->MaskNonFinite;
-  blocks.Encode(samples, component, first, (volume.Slices + slices + 3) / 4, volume.Hidden,
+  const vtkZFPBlocks::Units units{ this->Offset, this->Scale };
+  blocks.Encode(samples, component, first, (volume.Slices + slices + 3) / 4, units, volume.Hidden,
     volume.Summary, [](double) { return true; });
   if (!volume.Summary.IsFinite())
   {
@@ -194,7 +202,10 @@ bool vtkCompressedVolumeBuilder::Finish(vtkImageData* image)
   vtkNew<vtkCompressedVolume> volume;
   volume->SetBlockBits(work->BlockBits);
   volume->SetDimensions(work->Dimensions);
-  volume->SetRange(work->Summary.GetRange().data());
+  volume->SetOffset(this->Offset);
+  volume->SetScale(this->Scale);
+  volume->SetRange(
+    volume->ToSample(work->Summary.GetRange()[0]), volume->ToSample(work->Summary.GetRange()[1]));
   volume->SetHiddenSamples(work->Hidden.Mask);
   volume->SetScalarType(work->ScalarType);
   volume->SetArrayName(name.empty() ? "scalars" : name);
@@ -211,6 +222,8 @@ void vtkCompressedVolumeBuilder::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "ArrayName: " << this->ArrayName << "\n";
   os << indent << "MaskNonFinite: " << (this->MaskNonFinite ? "on\n" : "off\n");
+  os << indent << "Offset: " << this->Offset << "\n";
+  os << indent << "Scale: " << this->Scale << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "NumberOfSlices: " << this->GetNumberOfSlices() << "\n";
   os << indent << "ErrorMessage: " << this->ErrorMessage << "\n";

@@ -59,6 +59,18 @@ public:
 
   ///@{
   /**
+   * The stream's units, see vtkCompressedVolume: samples are kept as float32 after Offset is taken
+   * off and the rest divided by Scale, above 0. Default 0 and 1. vtkImageZFPCompress, which sees
+   * all samples, chooses them itself. Not to be changed between slabs.
+   */
+  vtkSetMacro(Offset, double);
+  vtkGetMacro(Offset, double);
+  vtkSetMacro(Scale, double);
+  vtkGetMacro(Scale, double);
+  ///@}
+
+  ///@{
+  /**
    * Threads used to encode; 0, the default, takes all that OpenMP offers (OMP_NUM_THREADS).
    */
   vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
@@ -86,8 +98,8 @@ public:
   /**
    * Store the compressed volume in an image, when all slices are there: its dimensions and field
    * data are set, its point and cell data emptied; spacing, origin and direction matrix stay.
-   * Refused for values all of which are tiny (see vtkImageZFPCompress). Frees what the builder
-   * holds.
+   * Refused for values all of which are tiny to zfp (below 2^-74, about 5e-23) at the Scale. Frees
+   * what the builder holds.
    */
   bool Finish(vtkImageData* image);
 
@@ -109,6 +121,8 @@ private:
   std::string CheckSlab(vtkDataArray* samples, int component) const;
 
   std::string ArrayName;
+  double Offset = 0.0;
+  double Scale = 1.0;
   bool MaskNonFinite = false;
   int NumberOfThreads = 0;
   std::string ErrorMessage;

@@ -439,15 +439,30 @@ bool vtkImageZFPCompress::Compress(
   hidden.Flags = flags ? flags->GetPointer(0) : nullptr;
   hidden.Hiding = part.Association == vtkCompressedVolume::CellData ? HidingCell : HidingPoint;
   hidden.NotFinite = this->MaskNonFinite;
+  vtkZFPBlocks::Units units = vtkZFPBlocks::Units::Find(samples, this->Component, hidden);
   const int blockBits = vtkCompressedVolume::BlockBitsForRate(this->Rate);
   vtkNew<vtkUnsignedCharArray> stream;
   stream->SetNumberOfValues(vtkCompressedVolume::StreamBytesFor(dims, blockBits));
   vtkZFPBlocks blocks(dims, blockBits, stream->GetPointer(0), this->NumberOfThreads);
   vtkZFPBlocks::Summary summary;
-  if (!blocks.Encode(samples, this->Component, 0, blocks.GetNumberOfLayers(), hidden, summary,
-        vtkZFPBlocks::ReportOf(this)))
+  const auto encode = [&]()
+  {
+    summary = vtkZFPBlocks::Summary();
+    hidden.Mask = vtkBlockMask();
+    return blocks.Encode(samples, this->Component, 0, blocks.GetNumberOfLayers(), units, hidden,
+      summary, vtkZFPBlocks::ReportOf(this));
+  };
+  if (!encode())
   {
     return false;
+  }
+  if (summary.IsTiny())
+  {
+    units.Enlarge(summary.Magnitude());
+    if (!encode())
+    {
+      return false;
+    }
   }
   const std::string error = summary.GetObjection();
   if (!error.empty())
@@ -459,7 +474,10 @@ bool vtkImageZFPCompress::Compress(
   vtkNew<vtkCompressedVolume> volume;
   volume->SetBlockBits(blockBits);
   volume->SetDimensions(dims);
-  volume->SetRange(summary.GetRange().data());
+  volume->SetOffset(units.Offset);
+  volume->SetScale(units.Scale);
+  volume->SetRange(
+    volume->ToSample(summary.GetRange()[0]), volume->ToSample(summary.GetRange()[1]));
   volume->SetHiddenSamples(hidden.Mask);
   volume->SetHiddenCells(part.HiddenCells(input));
   volume->SetScalarType(array->GetDataType());

@@ -21,6 +21,12 @@
  * The array is the one of SetInputArrayToProcess(0, ...), by default the active point scalars, else
  * the first point array, else the active cell scalars, else the first cell array.
  *
+ * Where float32 cannot hold the samples, the stream has units of its own (see
+ * vtkCompressedVolume): doubles and large integers that differ by less than a 16th of what they are
+ * have their middle taken off, and values that are too large for float32, or all too small for zfp,
+ * are scaled by a power of two. So what float32 rounds off is at most 2^-20 of their range. Pieces
+ * that processes share have units each. Of 64-bit integers beyond 2^53 doubles round off the rest.
+ *
  * Blocks are encoded in parallel with OpenMP; the stream is bit-identical to what libzfp's
  * zfp_compress() writes, whatever the number of threads. (Except for blocks of 4x4x4 samples that
  * are all below 2^-98, about 3e-30: zfp's encoder overflows there, this filter stores zero.) Values
@@ -29,8 +35,7 @@
  *
  * Errors, each one message and an output without stream: no such array or component; an image with
  * fewer than 2 samples along an axis; a rate outside (0, 32]; NaN or infinite samples (as float32;
- * the message counts them); an array so small (below 2^-74, about 5e-23) that zeros for values
- * below 2^-98 would show.
+ * the message counts them).
  *
  * The filter asks for the whole extent of its input, or the piece of it that is asked for.
  *

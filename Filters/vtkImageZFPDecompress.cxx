@@ -4,6 +4,7 @@
 
 #include "vtkCellData.h"
 #include "vtkCompressedVolume.h"
+#include "vtkDoubleArray.h"
 #include "vtkErrorCode.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
@@ -12,6 +13,7 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkZFPBlocks.h"
@@ -52,7 +54,7 @@ void ForEachHidden(
 
 //------------------------------------------------------------------------------
 // Hidden samples become NaN, and the ghost arrays tell of them and of hidden cells.
-void Hide(vtkCompressedVolume* volume, vtkFloatArray* samples, vtkImageData* output)
+void Hide(vtkCompressedVolume* volume, vtkDataArray* samples, vtkImageData* output)
 {
   int blocks[3];
   volume->GetBlocks(blocks);
@@ -71,7 +73,7 @@ void Hide(vtkCompressedVolume* volume, vtkFloatArray* samples, vtkImageData* out
     ForEachHidden(volume->GetHiddenSamples(), blocks, size,
       [&](vtkIdType sample)
       {
-        samples->SetValue(sample, std::numeric_limits<float>::quiet_NaN());
+        samples->SetComponent(sample, 0, std::numeric_limits<double>::quiet_NaN());
         ghosts->SetValue(sample, ghosts->GetValue(sample) | flag);
       });
   }
@@ -83,6 +85,18 @@ void Hide(vtkCompressedVolume* volume, vtkFloatArray* samples, vtkImageData* out
       [&](vtkIdType cell)
       { ghosts->SetValue(cell, ghosts->GetValue(cell) | vtkDataSetAttributes::HIDDENCELL); });
   }
+}
+
+//------------------------------------------------------------------------------
+// What the samples are that a stream has in units of its own.
+vtkSmartPointer<vtkDataArray> InSamplesUnits(vtkCompressedVolume* volume, vtkFloatArray* stored)
+{
+  vtkNew<vtkDoubleArray> samples;
+  samples->SetName(stored->GetName());
+  samples->SetNumberOfValues(stored->GetNumberOfValues());
+  std::transform(stored->GetPointer(0), stored->GetPointer(0) + stored->GetNumberOfValues(),
+    samples->GetPointer(0), [volume](float value) { return volume->ToSample(value); });
+  return samples;
 }
 }
 
@@ -145,15 +159,20 @@ int vtkImageZFPDecompress::RequestData(
   }
   int dims[3];
   volume->GetDimensions(dims);
-  vtkNew<vtkFloatArray> samples;
-  samples->SetName(volume->GetArrayName().c_str());
-  samples->SetNumberOfValues(static_cast<vtkIdType>(dims[0]) * dims[1] * dims[2]);
+  vtkNew<vtkFloatArray> stored;
+  stored->SetName(volume->GetArrayName().c_str());
+  stored->SetNumberOfValues(static_cast<vtkIdType>(dims[0]) * dims[1] * dims[2]);
 
   const auto stream = vtkZFPBlocks::Align(volume->GetStream());
   vtkZFPBlocks blocks(dims, volume->GetBlockBits(), stream->GetPointer(0), this->NumberOfThreads);
-  if (!blocks.Decode(samples->GetPointer(0), vtkZFPBlocks::ReportOf(this)))
+  if (!blocks.Decode(stored->GetPointer(0), vtkZFPBlocks::ReportOf(this)))
   {
     return 1;
+  }
+  vtkSmartPointer<vtkDataArray> samples = stored;
+  if (volume->HasUnits())
+  {
+    samples = InSamplesUnits(volume, stored);
   }
   vtkDataSetAttributes* attributes = output->GetPointData();
   if (volume->GetAssociation() == vtkCompressedVolume::CellData)

@@ -148,19 +148,25 @@ float vtkZFPBlocks::Summary::Magnitude() const
 }
 
 //------------------------------------------------------------------------------
-std::string vtkZFPBlocks::Summary::GetObjection() const
+bool vtkZFPBlocks::Summary::IsTiny() const
 {
-  std::ostringstream objection;
   // zero in place of a tiny value may not show in float32 beside the largest value: 2^24 times
   // larger
   const float enough = TinyMagnitude() * 16777216.0f;
+  return this->IsFinite() && this->TinyBlocks > 0 && this->Magnitude() < enough;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkZFPBlocks::Summary::GetObjection() const
+{
+  std::ostringstream objection;
   if (!this->IsFinite())
   {
     objection << this->NaNs << " NaN and " << this->Infinities
               << " infinite values (as float32), which ZFP cannot compress: replace them first, or "
                  "have them hidden (MaskNonFinite).";
   }
-  else if (this->TinyBlocks > 0 && this->Magnitude() < enough)
+  else if (this->IsTiny())
   {
     objection << "values too small for ZFP: the largest is " << this->Magnitude()
               << ", and all are below 3.16e-30 in " << this->TinyBlocks
@@ -326,13 +332,94 @@ bool vtkZFPBlocks::ForEachBlock(vtkTypeInt64 first, vtkTypeInt64 last, bool writ
   return !stopped && report(1.0);
 }
 
+namespace
+{
+//------------------------------------------------------------------------------
+// The range of the visible, finite values of a component; empty (low > high) where there are none.
+struct FindRangeWorker
+{
+  template <typename ArrayT>
+  void operator()(
+    ArrayT* array, int component, const vtkZFPBlocks::Hidden& hidden, double range[2]) const
+  {
+    const auto values = vtk::DataArrayValueRange(array);
+    const vtkTypeInt64 stride = array->GetNumberOfComponents();
+    const vtkTypeInt64 tuples = array->GetNumberOfTuples();
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+#pragma omp parallel for reduction(min : low) reduction(max : high)
+    for (vtkTypeInt64 tuple = 0; tuple < tuples; ++tuple)
+    {
+      const double value = static_cast<double>(values[tuple * stride + component]);
+      if (std::isfinite(value) && !(hidden.Flags && (hidden.Flags[tuple] & hidden.Hiding)))
+      {
+        low = std::min(low, value);
+        high = std::max(high, value);
+      }
+    }
+    range[0] = low;
+    range[1] = high;
+  }
+};
+
+//------------------------------------------------------------------------------
+// Does float32 hold the values of a type between two of them?
+bool AreExact(int type, const double range[2])
+{
+  const auto exact = [](double value)
+  { return static_cast<double>(static_cast<float>(value)) == value; };
+  const double most = 16777216.0; // of whole numbers
+  return type == VTK_DOUBLE ? range[0] == range[1] && exact(range[0])
+                            : -most <= range[0] && range[1] <= most;
+}
+}
+
+//------------------------------------------------------------------------------
+vtkZFPBlocks::Units vtkZFPBlocks::Units::Find(
+  vtkDataArray* array, int component, const Hidden& hidden)
+{
+  Units units;
+  if (array->GetDataTypeSize() <= 2 || array->GetDataType() == VTK_FLOAT)
+  {
+    return units;
+  }
+  double range[2];
+  FindRangeWorker worker;
+  if (!vtkArrayDispatch::Dispatch::Execute(array, worker, component, hidden, range))
+  {
+    worker(array, component, hidden, range);
+  }
+  const double extent = range[1] - range[0];
+  double magnitude = std::max(std::abs(range[0]), std::abs(range[1]));
+  if (!(extent >= 0.0) || AreExact(array->GetDataType(), range))
+  {
+    return units;
+  }
+  if (extent < magnitude / 16.0)
+  {
+    units.Offset = range[0] + extent / 2.0;
+    magnitude = std::max(std::abs(range[0] - units.Offset), std::abs(range[1] - units.Offset));
+  }
+  using Float = std::numeric_limits<float>;
+  if (magnitude > Float::max() || (magnitude > 0.0 && magnitude < Float::min()))
+  {
+    units.Enlarge(magnitude); // what is merely too small for zfp shows when it is encoded
+  }
+  return units;
+}
+
+//------------------------------------------------------------------------------
+void vtkZFPBlocks::Units::Enlarge(double magnitude)
+{
+  this->Scale *= std::ldexp(1.0, std::ilogb(magnitude));
+}
+
 //------------------------------------------------------------------------------
 // Encodes blocks of one component of an array, converted to float block by block.
 template <typename ArrayT>
 struct vtkZFPBlocks::Encoder
 {
   Encoder(const vtkZFPBlocks& blocks, ArrayT* array, int component, vtkTypeInt64 first,
-    const Hidden& hidden, std::vector<vtkTypeUInt64>& masks)
+    const Units& units, const Hidden& hidden, std::vector<vtkTypeUInt64>& masks)
     : Values(vtk::DataArrayValueRange(array))
     , Stride(array->GetNumberOfComponents())
     , Row(blocks.Dimensions[0] * this->Stride)
@@ -340,6 +427,8 @@ struct vtkZFPBlocks::Encoder
     , Offset(component - 4 * first * this->Slice)
     , Blocks{ blocks.Blocks[0], blocks.Blocks[1] }
     , FirstLayer(first)
+    , InUnits(units)
+    , Own(units.AreOwn())
     , HiddenSamples(hidden)
     , Masks(masks)
   {
@@ -375,11 +464,11 @@ struct vtkZFPBlocks::Encoder
   void Gather(const Block& block, float samples[64], Summary& found) const
   {
     const vtkTypeInt64 first = block.Sample * this->Stride + this->Offset;
-    if (block.IsWhole())
+    if (block.IsWhole() && this->Own)
     {
       for (int i = 0; i < 64; ++i)
       {
-        samples[i] = this->Value(first, i % 4, i / 4 % 4, i / 16);
+        samples[i] = static_cast<float>(this->At(first, i % 4, i / 4 % 4, i / 16));
       }
       found.AddBlock(samples);
       return;
@@ -437,10 +526,17 @@ struct vtkZFPBlocks::Encoder
       (hidden.NotFinite && !std::isfinite(value));
   }
 
+  auto At(vtkTypeInt64 first, int x, int y, int z) const
+  {
+    return this->Values[first + x * this->Stride + y * this->Row + z * this->Slice];
+  }
+
   float Value(vtkTypeInt64 first, int x, int y, int z) const
   {
-    return static_cast<float>(
-      this->Values[first + x * this->Stride + y * this->Row + z * this->Slice]);
+    const auto value = this->At(first, x, y, z);
+    return static_cast<float>(this->Own
+        ? value
+        : (static_cast<double>(value) - this->InUnits.Offset) / this->InUnits.Scale);
   }
 
   decltype(vtk::DataArrayValueRange(std::declval<ArrayT*>())) Values;
@@ -448,6 +544,8 @@ struct vtkZFPBlocks::Encoder
   vtkTypeInt64 Offset;             // of the volume's first value in the array
   vtkTypeInt64 Blocks[2];          // on x and y
   vtkTypeInt64 FirstLayer;
+  Units InUnits;
+  bool Own;
   const Hidden& HiddenSamples;
   std::vector<vtkTypeUInt64>& Masks; // of all blocks from FirstLayer on; empty: nothing may hide
 };
@@ -457,11 +555,12 @@ struct vtkZFPBlocks::EncodeWorker
 {
   template <typename ArrayT>
   void operator()(ArrayT* array, vtkZFPBlocks& blocks, int component, vtkTypeInt64 first,
-    vtkTypeInt64 last, Hidden& hidden, Summary& summary, const Report& report, bool& complete) const
+    vtkTypeInt64 last, const Units& units, Hidden& hidden, Summary& summary, const Report& report,
+    bool& complete) const
   {
     const vtkTypeInt64 number = (last - first) * blocks.Blocks[0] * blocks.Blocks[1];
     std::vector<vtkTypeUInt64> masks(hidden.MayHide() ? number : 0);
-    const Encoder<ArrayT> encoder(blocks, array, component, first, hidden, masks);
+    const Encoder<ArrayT> encoder(blocks, array, component, first, units, hidden, masks);
     complete = blocks.ForEachBlock(first, last, true, summary, report, encoder);
     for (const vtkTypeUInt64 mask : masks)
     {
@@ -473,15 +572,15 @@ struct vtkZFPBlocks::EncodeWorker
 
 //------------------------------------------------------------------------------
 bool vtkZFPBlocks::Encode(vtkDataArray* array, int component, vtkTypeInt64 first, vtkTypeInt64 last,
-  Hidden& hidden, Summary& summary, const Report& report)
+  const Units& units, Hidden& hidden, Summary& summary, const Report& report)
 {
   EncodeWorker worker;
   bool complete = false;
   if (!vtkArrayDispatch::Dispatch::Execute(
-        array, worker, *this, component, first, last, hidden, summary, report, complete))
+        array, worker, *this, component, first, last, units, hidden, summary, report, complete))
   {
     // array classes that VTK does not dispatch to (bits, implicit arrays): through doubles
-    worker(array, *this, component, first, last, hidden, summary, report, complete);
+    worker(array, *this, component, first, last, units, hidden, summary, report, complete);
   }
   return complete;
 }

@@ -32,7 +32,7 @@ class vtkZFPBlocks
 {
 public:
   /**
-   * What was seen of the samples of some blocks.
+   * What was seen of the samples of some blocks, in the stream's units.
    */
   struct Summary
   {
@@ -46,6 +46,7 @@ public:
     std::array<double, 2> GetRange() const;
     bool IsFinite() const { return this->NaNs == 0 && this->Infinities == 0; }
     float Magnitude() const; ///< largest absolute value
+    bool IsTiny() const;     ///< whether blocks that were encoded as zero would show
     void Add(float value);
     void AddBlock(const float samples[64]);
     void Add(const Summary& other);
@@ -93,6 +94,29 @@ public:
   };
 
   /**
+   * What a stream counts its values in: a sample is Offset + Scale times what it has.
+   */
+  struct Units
+  {
+    double Offset = 0.0;
+    double Scale = 1.0;
+
+    bool AreOwn() const { return this->Offset == 0.0 && this->Scale == 1.0; }
+
+    /**
+     * Units in which float32 can hold the visible, finite samples of a component: their own, but
+     * for types of more than 24 bits. Values that differ by less than a 16th of what they are lose
+     * their middle, and what is beyond float32 is scaled.
+     */
+    static Units Find(vtkDataArray* array, int component, const Hidden& hidden);
+
+    /**
+     * Scale by a power of two so that what was of this magnitude is between 1 and 2.
+     */
+    void Enlarge(double magnitude);
+  };
+
+  /**
    * Encode layers [first, last) from one component of an array that holds their tuples, the first
    * being that of layer `first`. Layers must be encoded in order, each once. As soon as a value
    * that is not finite (as float32) has been seen, here or in `summary`, values are counted but no
@@ -103,7 +127,7 @@ public:
    * blocks are encoded as zero, and counted.
    */
   bool Encode(vtkDataArray* array, int component, vtkTypeInt64 first, vtkTypeInt64 last,
-    Hidden& hidden, Summary& summary, const Report& report);
+    const Units& units, Hidden& hidden, Summary& summary, const Report& report);
   vtkTypeInt64 GetNumberOfLayers() const { return this->Blocks[2]; }
 
   static float TinyMagnitude() { return 3.1554436e-30f; } // 2^-98

@@ -237,7 +237,10 @@ void vtkZFPBrickContour::AddPoint(
   }
   if (this->ComputeGradients)
   {
-    part.Gradients.insert(part.Gradients.end(), gradient, gradient + 3);
+    for (const float component : gradient)
+    {
+      part.Gradients.push_back(static_cast<float>(this->Scale * component));
+    }
   }
   if (this->ComputeNormals)
   {

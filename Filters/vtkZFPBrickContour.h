@@ -72,6 +72,7 @@ public:
    */
   bool ComputeNormals = true;
   bool ComputeGradients = false;
+  double Scale = 1.0; ///< of samples' units to those of gradients
   ///@}
 
   /**

@@ -154,8 +154,12 @@ public:
     , Contour(this->Bricks, extentStart)
     , Hidden(volume->GetCellsWithoutSurface())
     , BrickRanges(*self->BrickRanges)
-    , Values(self->GetValues(), self->GetValues() + self->GetNumberOfContours())
   {
+    for (int i = 0; i < self->GetNumberOfContours(); ++i)
+    {
+      this->Values.push_back(volume->ToStored(self->GetValue(i)));
+    }
+    this->Contour.Scale = volume->GetScale();
     this->Contour.ComputeNormals = self->ComputeNormals;
     this->Contour.ComputeGradients = self->ComputeGradients;
     this->Contour.Hidden = this->Hidden.IsEmpty() ? nullptr : &this->Hidden;
@@ -197,7 +201,7 @@ private:
   vtkZFPBrickContour Contour;
   vtkBlockMask Hidden;
   Ranges& BrickRanges;
-  std::vector<double> Values;
+  std::vector<double> Values; // in the stream's units
   // for every isovalue, one after the other, the part of every brick; null where there is none
   std::vector<std::unique_ptr<vtkZFPBrickContour::Part>> Parts;
   std::vector<vtkIdType> Held; // those of Parts that are not null
@@ -353,7 +357,7 @@ vtkSmartPointer<vtkFloatArray> vtkZFPContour::Work::MakeScalars(
   {
     const vtkZFPBrickContour::Part& part = *this->Parts[held];
     std::fill_n(scalars->GetPointer(part.FirstPoint), part.GetNumberOfPoints(),
-      static_cast<float>(this->Values[held / this->Bricks.GetNumberOfBricks()]));
+      static_cast<float>(this->Self->GetValue(held / this->Bricks.GetNumberOfBricks())));
   }
   return scalars;
 }

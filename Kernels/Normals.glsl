@@ -1,5 +1,5 @@
 // The surface's normal where a ray has met it: the trilinear interpolant of the voxels' central differences, as
-// in VTK's mapper, hence continuous across cells and blocks.
+// in VTK's mapper, hence continuous across cells and blocks; one-sided at the volume's border, as in VTK's meshes.
 
 struct SurfacePoint
 {
@@ -63,12 +63,12 @@ Stencil PlaceStencil(ivec3 cell)
   return at;
 }
 
-// A quarter of a sample, so that no difference overflows, by its planes on x, y and z: x, y, z, w of the four.
+// An eighth of a sample, so that no difference overflows, by its planes on x, y and z: x, y, z, w of the four.
 #ifdef HAS_CACHE_MAP
-#define SAMPLE(i, j, k) (0.25 * uintBitsToFloat( \
+#define SAMPLE(i, j, k) (0.125 * uintBitsToFloat( \
   cacheValues[64u * SlotAt(bvec3(at.FurtherX.i, at.FurtherY.j, at.FurtherZ.k)) + at.X.i + at.Y.j + at.Z.k]))
 #else
-#define SAMPLE(i, j, k) (0.25 * uintBitsToFloat(cacheValues[at.X.i + at.Y.j + at.Z.k]))
+#define SAMPLE(i, j, k) (0.125 * uintBitsToFloat(cacheValues[at.X.i + at.Y.j + at.Z.k]))
 #endif
 
 #ifdef COLORED
@@ -157,13 +157,16 @@ vec3 Gradient(SurfacePoint hit)
   beforeZ = Beyond(beforeZ, low, high, around, CELLS_Z, ivec4(0, 1, 3, 4));
   behindZ = Beyond(behindZ, high, low, around, CELLS_Z, ivec4(18, 19, 21, 22));
 #endif
-  // differences on the four edges in the axis' direction, at their near and their far ends
-  vec4 nearX = vec4(low.yw, high.yw) - beforeX;
-  vec4 farX = behindX - vec4(low.xz, high.xz);
-  vec4 nearY = vec4(low.zw, high.zw) - beforeY;
-  vec4 farY = behindY - vec4(low.xy, high.xy);
-  vec4 nearZ = high - beforeZ;
-  vec4 farZ = behindZ - low;
+  // differences on the four edges in the axis' direction, at their near and their far ends; over two voxels, but at the
+  // volume's border over one
+  vec3 near = mix(vec3(1.0), vec3(2.0), equal(hit.Cell, ivec3(0)));
+  vec3 far = mix(vec3(1.0), vec3(2.0), equal(hit.Cell + 2, scene.Samples.xyz));
+  vec4 nearX = near.x * (vec4(low.yw, high.yw) - beforeX);
+  vec4 farX = far.x * (behindX - vec4(low.xz, high.xz));
+  vec4 nearY = near.y * (vec4(low.zw, high.zw) - beforeY);
+  vec4 farY = far.y * (behindY - vec4(low.xy, high.xy));
+  vec4 nearZ = near.z * (high - beforeZ);
+  vec4 farZ = far.z * (behindZ - low);
   vec3 u = hit.Local;
   vec4 onX = mix(nearX, farX, u.x);
   vec4 onY = mix(nearY, farY, u.y);

@@ -44,7 +44,7 @@ layout(std140, binding = 0) uniform Scene
   uvec4 Policy;      // few rays: as many pixels a ray; pixels that a ray has for each block it looks ahead
   ivec4 Surface;     // number of isovalues, of clipping planes, bits of the regions that are drawn; bits per
                      // block of the stream that gives the colours
-  vec4 Isovalues[MAX_ISOVALUES]; // each as a sum of two floats
+  vec4 Isovalues[MAX_ISOVALUES]; // in the units of the stream, each as a sum of two floats
   mat4 NormalMatrix; // index-space gradient to view-space normal (3x3)
   vec4 DepthTerms; // clip-space z and w as functions of t: z = x + y t, w = z + w t
   vec4 Colors[MAX_ISOVALUES]; // of the isosurfaces; w: opacity

@@ -198,8 +198,10 @@ void TranslateLights(vtkRenderer* renderer, vtkMatrix4x4* worldToEye, SceneBlock
   }
 }
 
-// Isovalues that show, with their colours and opacities from the transfer functions.
-void TranslateIsovalues(vtkVolumeProperty* property, SceneBlock& scene)
+// Isovalues that show, in the stream's units, with their colours and opacities from the transfer
+// functions.
+void TranslateIsovalues(
+  vtkVolumeProperty* property, vtkCompressedVolume* compressed, SceneBlock& scene)
 {
   vtkContourValues* values = property->GetIsoSurfaceValues();
   int& count = scene.Surface[0];
@@ -221,8 +223,9 @@ void TranslateIsovalues(vtkVolumeProperty* property, SceneBlock& scene)
     {
       property->GetRGBTransferFunction()->GetColor(value, color);
     }
-    scene.Isovalues[count][0] = static_cast<float>(value);
-    scene.Isovalues[count][1] = static_cast<float>(value - scene.Isovalues[count][0]);
+    const double stored = compressed->ToStored(value);
+    scene.Isovalues[count][0] = static_cast<float>(stored);
+    scene.Isovalues[count][1] = static_cast<float>(stored - scene.Isovalues[count][0]);
     std::copy(color, color + 3, scene.Colors[count]);
     scene.Colors[count][3] = static_cast<float>(opacity);
     scene.Lighting[1] |= opacity < 1.0 ? 1 : 0;
@@ -336,7 +339,7 @@ SceneBlock TranslateScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMap
   TranslateRays(MakeEyeRays(projection, scene.Image[0], scene.Image[1]), eyeToIndex, scene);
   camera->GetClippingRange(scene.RayRange);
   TranslatePart(image, compressed, scene);
-  TranslateIsovalues(volume->GetProperty(), scene);
+  TranslateIsovalues(volume->GetProperty(), compressed, scene);
   TranslateClipping(mapper, worldToIndex, scene);
   TranslateCropping(mapper, image, compressed, scene);
 

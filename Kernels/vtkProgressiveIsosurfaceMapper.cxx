@@ -102,14 +102,14 @@ PipelineVolume DescribeVolume(vtkCompressedVolume* source)
   return volume;
 }
 
-// 256 colours over a table's range, as in Shading.glsl.
-std::vector<float> MakePalette(vtkScalarsToColors* table)
+// 256 colours over a table's range, which is in the units of the stream there, as in Shading.glsl.
+std::vector<float> MakePalette(vtkScalarsToColors* table, vtkCompressedVolume* source)
 {
   const int colors = 256;
   const double* range = table->GetRange();
   const double extent = range[1] - range[0];
-  std::vector<float> palette = { static_cast<float>(range[0]),
-    extent > 0.0 ? static_cast<float>(1.0 / extent) : 0.0f, 0.0f, 0.0f };
+  std::vector<float> palette = { static_cast<float>(source->ToStored(range[0])),
+    extent > 0.0 ? static_cast<float>(source->GetScale() / extent) : 0.0f, 0.0f, 0.0f };
   for (int i = 0; i < colors; ++i)
   {
     double color[3];
@@ -550,7 +550,8 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdatePalette(vtkVolumeProperty*
 {
   vtkScalarsToColors* table = this->Owner->ColorLookupTable ? this->Owner->ColorLookupTable
                                                             : property->GetRGBTransferFunction();
-  const std::vector<float> palette = this->Colors.Image ? MakePalette(table) : std::vector<float>();
+  const std::vector<float> palette =
+    this->Colors.Image ? MakePalette(table, this->Colors.Volume) : std::vector<float>();
   const bool same = palette == this->Palette;
   if (!same || !this->HaveScene)
   {
@@ -1024,7 +1025,8 @@ bool vtkProgressiveIsosurfaceMapper::GetHit(int x, int y, double position[3], do
   EyePosition(scene, x, y, t, point);
   impl->EyeToWorld->MultiplyPoint(point, point);
   std::copy(point, point + 3, position);
-  isovalue = double(scene.Isovalues[hit.Surface][0]) + scene.Isovalues[hit.Surface][1];
+  isovalue = impl->Values.Volume->ToSample(
+    double(scene.Isovalues[hit.Surface][0]) + scene.Isovalues[hit.Surface][1]);
   return true;
 }
 

@@ -32,6 +32,32 @@ GRAZING_FRACTION_NOISE = 0.10
 #: a hundredth of a voxel of it cannot be told from it.
 GRAZING_FRACTION_SINGULAR = 0.03
 
+# --- normals --------------------------------------------------------------------------------------------------------------------------
+
+#: Angle to the gradient of a field whose central differences are its gradient, in degrees: 0.0037 for the packing into
+#: 2 x 16 bits (Cigolle et al. 2014), the rest for float32.
+NORMAL_DEGREES = 0.004
+
+#: In white noise, against central differences in double precision: the same where the gradient is strong, and where it is weak ...
+NORMAL_NOISE_DEGREES = 0.01
+
+#: ... down to this part of the strongest one seen; below, rounding gives the direction.
+WEAK_GRADIENT = 0.01
+
+#: Angle to the radius, times the square of the radius in voxels. The third derivatives of a distance are at most 1.2 / r^2: a central
+#: difference is off by a sixth of them, its interpolation between samples by an eighth for each axis, and r is smaller by up to two
+#: voxels where the differences are taken. In degrees.
+NORMAL_SPHERE_DEGREES = 57.3 * 1.2 * (1 / 6 + 3 / 8) * 1.5
+
+# --- values ---------------------------------------------------------------------------------------------------------------------------
+
+#: What float32 and 32 bits of zfp leave of values in units of the stream's, against their range.
+UNITS_RELATIVE = 2.0**-22
+
+#: Hits and gradients of a field of about -1 to 1, some tens of voxels wide, in two units, at 32 bits: 1e-7 of the range at a slope of a
+#: hundredth of it a voxel, or less where a ray grazes.
+UNITS_DEPTH = 1e-4
+
 # --- the caster itself -------------------------------------------------------------------------------------------------------
 
 #: Double precision against a closed form, in world units of a volume some ten units wide.

@@ -110,13 +110,17 @@ def _add_array(command):
     command.add_argument(
         "--rate", type=float, default=8.0, help="bits per sample, in (0, 32] (default: %(default)g)"
     )
-    _add_which(command)
+    _add_choice(command)
 
 
-def _add_which(command):
+def _add_choice(command):
     """What of a plain image."""
     command.add_argument("--array", help="name of the array (default: the active scalars)")
     command.add_argument("--component", type=int, default=0, help="component of the array")
+    command.add_argument(
+        "--mask-nan", action="store_true",
+        help="leave holes where samples are NaN or infinite, which are an error otherwise",
+    )  # fmt: skip
 
 
 def _add_compress(commands):
@@ -143,7 +147,7 @@ def _add_rate(commands):
         "--relative", action="store_true",
         help="the tolerance is a part of the values' range, 0.001 of it, say",
     )  # fmt: skip
-    _add_which(command)
+    _add_choice(command)
 
 
 def _add_decompress(commands):
@@ -176,7 +180,7 @@ def _add_contour(commands):
         "--rate", type=float,
         help="compress a plain image first, to this many bits per sample, in (0, 32]",
     )  # fmt: skip
-    _add_which(command)
+    _add_choice(command)
     command.add_argument("--no-normals", action="store_true", help="points and triangles alone")
     command.add_argument("--threads", type=int, default=0, help="0 (default) for one per core")
 
@@ -334,7 +338,13 @@ def _compress(parsed):
     source = getattr(parsed, "in")
     with progress_bar(f"Compressing {source.name}") as progress:
         volume = progiso.compress_file(
-            source, parsed.rate, parsed.array, parsed.component, parsed.threads, progress
+            source,
+            parsed.rate,
+            parsed.array,
+            parsed.component,
+            parsed.threads,
+            progress,
+            parsed.mask_nan,
         )
     _save(volume, parsed.out, parsed.appended)
     if parsed.out.suffix.lower() == ".zfp":
@@ -348,7 +358,7 @@ def _rate(parsed):
     image = _read(parsed)
     with progress_bar("Trying rates") as progress:
         rate = progiso.least_rate(
-            image, parsed.tolerance, parsed.relative, parsed.array, parsed.component, progress
+            image, parsed.tolerance, parsed.relative, parsed.array, parsed.component, progress, parsed.mask_nan
         )
     print(f"{rate:.9g}")  # of 64ths all digits, for `compress --rate`
 
@@ -430,6 +440,7 @@ def _contour(parsed):
             not parsed.no_normals,
             threads=parsed.threads,
             progress=progress,
+            mask_nan=parsed.mask_nan,
         )
     with progress_bar(f"Writing {parsed.out.name}") as progress:
         progiso.save_surface(surface, parsed.out, progress)
@@ -470,6 +481,7 @@ def _render(parsed):
             parsed.memory_budget,
             parsed.detailed,
             parsed.opacity or 1.0,
+            parsed.mask_nan,
         )
     _write_results(result, parsed)
     _print_summary(result)

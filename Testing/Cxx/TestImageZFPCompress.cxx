@@ -174,10 +174,6 @@ void TestErrors()
   values[17] = values[209] = std::numeric_limits<float>::quiet_NaN();
   values[3] = -std::numeric_limits<float>::infinity();
   ExpectError("2 NaN and 1 infinite", Image({ 6, 7, 5 }, FloatArray(values)), nothing);
-  vtkNew<vtkDoubleArray> huge;
-  huge->SetNumberOfValues(8);
-  huge->FillValue(1e300); // infinite as float32
-  ExpectError("0 NaN and 8 infinite", Image({ 2, 2, 2 }, huge), nothing);
 }
 
 //------------------------------------------------------------------------------
@@ -197,7 +193,8 @@ void TestTinyValues()
   EXPECT(volume->GetRange()[0] == 1e-31f, "the range is the original's");
 
   std::replace(values.begin(), values.end(), 1.0f, 1e-25f);
-  ExpectError("too small for ZFP", Image(dims, FloatArray(values)), [](vtkImageZFPCompress*) {});
+  const auto scaled = Read(Compress(Image(dims, FloatArray(values))));
+  EXPECT(scaled->GetScale() == std::ldexp(1.0, -84) && scaled->GetOffset() == 0.0, "scale");
   std::replace(values.begin(), values.end(), 1e-31f, 4e-30f); // just large enough for zfp
   const auto small = Read(Compress(Image(dims, FloatArray(values))));
   EXPECT(Reference(dims, values, 8.0).Equals(small->GetStream()), "small block");

@@ -119,7 +119,7 @@ class Scene:
 
 def least_budget(image, isovalue, camera, size=(160, 120), **settings):
     """Return the least memory budget that a lit scene can work with, as the error says that one byte is too little."""
-    scene = Scene(image, isovalue, camera, size, lit=True, **{**settings, "MemoryBudget": 1})
+    scene = Scene(image, isovalue, camera, size, lit=True, MemoryBudget=1, **settings)
     with vtk_messages() as messages:
         scene.window.Render()
     return int(re.search(r"at least (\d+) bytes", "".join(messages))[1])

@@ -62,7 +62,9 @@ def within_budget(division, image, isovalue, camera):
     """Put the least budget's bytes into a division of the work."""
     if "MemoryBudget" not in division:
         return division
-    return {**division, "MemoryBudget": int(division["MemoryBudget"] * least_budget(image, isovalue, camera, SIZE, **division))}
+    others = {name: value for name, value in division.items() if name != "MemoryBudget"}
+    least = least_budget(image, isovalue, camera, SIZE, **others)
+    return {**others, "MemoryBudget": int(division["MemoryBudget"] * least)}
 
 
 def same_pictures(scene, other):

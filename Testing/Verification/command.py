@@ -11,7 +11,7 @@ from pathlib import Path
 
 from .._files import atomic_path, check_output
 from ..benchmarks.document import new_document, write_json
-from ..benchmarks.machine import describe_machine
+from ..benchmarks.machine import OtherProcesses, describe_machine
 from .case import FAILED, QUICK, Settings
 from .page import markdown, print_table
 from .table import cases, measure
@@ -86,9 +86,11 @@ def verify(listed, settings, started=None):
     command = shlex.join(["python", "-m", "progiso", *sys.argv[1:]])
     document = new_document("verify", command, describe_machine())
     del document["measurements"]
-    start = time.monotonic()
+    start, others = time.monotonic(), OtherProcesses()
     document["rows"] = measure(listed, settings, started)
-    document["runs"][0].update(seconds=round(time.monotonic() - start, 1), complete=True)
+    document["runs"][0].update(
+        seconds=round(time.monotonic() - start, 1), complete=True, others_cores=others.cores()
+    )
     return document
 
 

@@ -79,7 +79,7 @@ def markdown(document):
         "",
         f"`{run['command']}`, commit {run['commit'] or '–'}, {run['started']}, "
         f"{number(run['seconds'])} s: {len(rows)} cases, {count[OK]} ok, {count[LIMIT]} at a "
-        f"limit that is stated, {count[FAILED]} failed.",
+        f"limit that is stated, {count[FAILED]} failed." + _busy(run),
         "",
         _ABOUT,
         "",
@@ -94,6 +94,14 @@ def markdown(document):
             lines.append(f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |")
         lines.append("")
     return "\n".join(lines).rstrip() + "\n"
+
+
+def _busy(run):
+    """A warning where others kept the machine from its work."""
+    others = run["others_cores"]
+    if others is None or others < 0.1:
+        return ""
+    return f" Others kept {number(others)} cores busy meanwhile: times are longer than they need be."
 
 
 def _error(row):

@@ -69,9 +69,12 @@ class Picture(Isosurface):
             self.renderer.GetActiveCamera().SetClippingRange(self._clip)
 
     def time(self, camera, repeat):
-        """Least milliseconds of an image, another one having been rendered before each."""
-        self.warm_up(camera)
-        times = []
+        """Least milliseconds of an image, another one having been rendered before each.
+
+        With `repeat` 0 those of the first image.
+        """
+        first = self.warm_up(camera) if repeat > 0 else self.render_from(camera)
+        times = [] if repeat > 0 else [first]
         for _ in range(repeat):
             self.render_from(opposite(camera))
             times.append(self.render_from(camera))
@@ -94,6 +97,7 @@ def check_depths(
     user=None,
     note="",
     volume=None,
+    level=None,
     sample=None,
     **options,
 ):
@@ -118,8 +122,10 @@ def check_depths(
     note : str
     volume : progiso.oracle.caster.Volume, optional
         What the caster casts; by default what libzfp decodes.
+    level : float, optional
+        The isovalue in that volume, where it is in other units.
     sample : int, optional
-        Of a large image, how many random pixels the caster sees; by default all.
+        How many rays of the image are held against the caster's, at random; by default all.
     options
         Of `Picture`.
 
@@ -138,9 +144,10 @@ def check_depths(
     volume = volume or decoded(image, user)
     pixels = None
     if sample is not None:
-        pixels = tuple(np.random.default_rng(0).integers(0, (size[1], size[0]), (sample, 2)).T)
-        depth = depth[pixels]
-    expected = caster.cast(volume, isovalue, eye, size, tolerances.SLACK, clip, pixels)
+        pixels = np.sort(np.random.default_rng(1).integers(0, depth.size, sample))
+        depth = depth.ravel()[pixels]
+    level = isovalue if level is None else level
+    expected = caster.cast(volume, level, eye, size, tolerances.SLACK, clip, pixels)
     found = compare(depth, expected)
     defects = (
         "" if complete else "the image is not complete",
@@ -150,7 +157,12 @@ def check_depths(
         "" if (found.hits > 0) == hits else f"{found.hits} hits",
     )
     error, limit = found.worst
+    # beyond what is asked of depths, within what their float32 can tell
+    rounded = bool(error > tolerances.DEPTH_VOXELS)
     about = f"{found.hits} hits"
+    if rounded:
+        far = np.max(np.where(np.isfinite(depth), depth, 0) * expected.voxels)
+        about += f"; float32 rounds distances of {far:.2g} voxels"
     if found.grazing >= _TOLD:
         about += f", {found.grazing:.1%} of the rays graze and {found.differing:.2%} differ"
     return Outcome(
@@ -158,6 +170,7 @@ def check_depths(
         limit,
         milliseconds,
         note="; ".join(filter(None, (note, about))),
+        documented=rounded,
         defect="; ".join(filter(None, defects)),
     )
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from . import compression, cracks, geometry, stiff, values
+from . import compression, cracks, geometry, normals, stiff, values
 from .case import row_of
 
 SECTIONS = {
     "Stiff fields": stiff.CASES,
     "Values": values.CASES,
+    "Normals": normals.CASES,
     "Geometry": geometry.CASES,
     "Compression": compression.CASES,
     "Cracks": cracks.CASES,

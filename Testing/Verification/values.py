@@ -8,8 +8,9 @@ from time import perf_counter
 import numpy as np
 
 from ..isosurface import make_isosurface
+from ..oracle import caster
 from . import tolerances
-from .case import Case, Outcome
+from .case import Case, Outcome, worst_of
 from .fields import blobs, noise
 from .scene import Picture, check_depths, check_views, compressed
 
@@ -20,6 +21,22 @@ _NOISE = tolerances.GRAZING_FRACTION_NOISE
 def _scaled(scale, settings):
     values = (blobs(_SHAPE, 9).astype(float) * scale).astype(np.float32)
     return check_views(settings, compressed(values), [0.1 * scale, -0.3 * scale])
+
+
+def _in_units(offset, scale, kind, settings):
+    """Values that float32 cannot hold, against the caster over the double-precision field."""
+    field = blobs(_SHAPE, 9).astype(float)
+    values = offset + scale * field
+    if np.issubdtype(kind, np.integer):
+        values = np.round(values)
+    values = values.astype(kind)
+    image = compressed(values)
+    # what double precision, or the type, has left of the field
+    volume = caster.Volume.from_image((values.astype(float) - offset) / scale, image)
+    return worst_of(
+        check_depths(settings, image, isovalue, volume=volume, level=(isovalue - offset) / scale)
+        for isovalue in (offset + scale * 0.1003, offset - scale * 0.3002)
+    )
 
 
 def _largest(settings):
@@ -94,16 +111,6 @@ def _not_finite(_settings):
     return _refused(lambda: compressed(values), "3 NaN", "2 infinite")
 
 
-def _beyond_float32(_settings):
-    return _refused(lambda: compressed(1e300 * blobs(_SHAPE, 16).astype(float)), "infinite")
-
-
-def _tiny(scale, settings):
-    """Below what zfp's encoder takes."""
-    values = (blobs(_SHAPE, 9).astype(float) * scale).astype(np.float32)
-    return _refused(lambda: compressed(values), "too small")
-
-
 def _no_isovalue(_settings):
     image = compressed(blobs(_SHAPE, 9))
     return _refused(lambda: make_isosurface(image, float("nan")), "finite")
@@ -123,6 +130,14 @@ CASES = (
     Case("values of 1e-28", partial(_scaled, 1e-28)),
     Case("values of 1e30", partial(_scaled, 1e30)),
     Case("values up to the largest float32", _largest),
+    Case("values of 1e-30", partial(_in_units, 0.0, 1e-30, np.float32)),
+    Case("denormal values, 1e-40", partial(_in_units, 0.0, 1e-40, np.float32)),
+    Case("values of 1e-300", partial(_in_units, 0.0, 1e-300, np.float64), quick=False),
+    Case("values of 1e300", partial(_in_units, 0.0, 1e300, np.float64)),
+    Case("1e8 + 1e-3 f", partial(_in_units, 1e8, 1e-3, np.float64)),
+    Case("-1e12 + f", partial(_in_units, -1e12, 1.0, np.float64), quick=False),
+    Case("1e9 + 500 f, int32", partial(_in_units, 1e9, 500.0, np.int32), quick=False),
+    Case("300 + f, doubles", partial(_in_units, 300.0, 1.0, np.float64), quick=False),
     *(
         Case(f"{kind}, the whole range", partial(_integers, kind), kind in ("int8", "uint64"))
         for kind in ("int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64")
@@ -137,7 +152,4 @@ CASES = (
     Case("isovalue NaN", _no_isovalue),
     Case("isovalue NaN, at the property", _no_isovalue_later),
     Case("values NaN and infinite", _not_finite),
-    Case("values of 1e300", _beyond_float32),
-    Case("values of 1e-30", partial(_tiny, 1e-30)),
-    Case("denormal values", partial(_tiny, 1e-40)),
 )

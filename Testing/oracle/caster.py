@@ -105,14 +105,14 @@ class Camera:
     def rays(self, size, pixels=None):
         """Return origins and unit directions, each [height * width, 3], for an image of `size` (width, height).
 
-        With `pixels`, arrays of rows and of columns, those of these alone.
+        `pixels`, counted through the rows from the top, has only some of them made.
         """
         width, height = size
         position, forward = np.asarray(self.position, float), self.forward
         right = _unit(np.cross(forward, np.asarray(self.view_up, float)))
         up = np.cross(right, forward)
-        rows, columns = np.indices((height, width)) if pixels is None else pixels
-        x, y = (columns + 0.5) / width * 2 - 1, 1 - (rows + 0.5) / height * 2
+        row, column = np.divmod(np.arange(width * height) if pixels is None else np.asarray(pixels), width)
+        x, y = (column + 0.5) / width * 2 - 1, 1 - (row + 0.5) / height * 2
         offset = x.reshape(-1, 1) * (width / height) * right + y.reshape(-1, 1) * up
         if self.parallel_scale is not None:
             return position + self.parallel_scale * offset, np.broadcast_to(forward, offset.shape)
@@ -141,7 +141,7 @@ class Cast:
 
 
 def cast(volume, isovalue, camera, size, slack=Slack(), clip=(0.0, np.inf), pixels=None):
-    """Cast one ray through the centre of each of the image's pixels.
+    """Cast one ray through the centre of each of the image's pixels, or of some.
 
     Parameters
     ----------
@@ -153,8 +153,8 @@ def cast(volume, isovalue, camera, size, slack=Slack(), clip=(0.0, np.inf), pixe
     slack : Slack
     clip : (float, float)
         distances of the clipping planes, across the view, between which the rays go.
-    pixels : (array of int, array of int), optional
-        Rows and columns of those that matter; the result is as long as they are.
+    pixels : array of int, optional
+        counted through the rows from the top: the only ones that are cast; the result is a list of them.
 
     Returns
     -------
@@ -163,7 +163,7 @@ def cast(volume, isovalue, camera, size, slack=Slack(), clip=(0.0, np.inf), pixe
     origins, directions = camera.rays(size, pixels)
     across = directions @ camera.forward
     result = cast_rays(volume, isovalue, origins, directions, slack, clip[0] / across, clip[1] / across)
-    shape = (size[1], size[0]) if pixels is None else np.shape(pixels[0])
+    shape = (size[1], size[0]) if pixels is None else (-1,)
     return Cast(*(getattr(result, name).reshape(shape) for name in ("depth", "early", "late", "voxels")))
 
 
