@@ -112,6 +112,10 @@ LAYERS_LEVELS = 2
 #: two holds such a tangent.
 LAYERS_PIXELS = 1e-3
 
+#: A picture that went to a browser as JPEG against the picture, mean grey levels: at a quality of 98 or 100 it is off by about 0.5; an image
+#: of one pass alone by tens.
+JPEG_MEAN = 2
+
 # --- memory ----------------------------------------------------------------------------------------------------------------------
 
 #: GPU memory beside the compressed payload and the cache, as the issue bounds it.

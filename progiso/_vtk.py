@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import warnings
 from contextlib import contextmanager
+from pathlib import Path
 
 from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkDataObject
@@ -99,7 +100,8 @@ def image_data(image):
         Naming what was passed instead.
     """
     if not getattr(image, "IsA", lambda _: False)("vtkImageData"):
-        raise TypeError(f"expected a vtkImageData, got {type(image).__name__}")
+        hint = ": progiso.read makes an image of a file" if isinstance(image, (str, Path)) else ""
+        raise TypeError(f"expected a vtkImageData, got {type(image).__name__}{hint}")
     return image
 
 

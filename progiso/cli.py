@@ -105,18 +105,16 @@ def _add_input(command, name="file"):
     )  # fmt: skip
 
 
-def _add_array(command):
-    """What to compress of a plain image."""
-    command.add_argument(
-        "--rate", type=float, default=8.0, help="bits per sample, in (0, 32] (default: %(default)g)"
-    )
+def _add_array(command, rate="bits per sample, in (0, 32] (default: 8)"):
+    """What to compress of a plain image, and what the rate does."""
+    command.add_argument("--rate", type=float, help=rate)
     _add_choice(command)
 
 
 def _add_choice(command):
     """What of a plain image."""
     command.add_argument("--array", help="name of the array (default: the active scalars)")
-    command.add_argument("--component", type=int, default=0, help="component of the array")
+    command.add_argument("--component", type=int, help="component of the array (default: 0)")
     command.add_argument(
         "--mask-nan", action="store_true",
         help="leave holes where samples are NaN or infinite, which are an error otherwise",
@@ -176,11 +174,7 @@ def _add_contour(commands):
         "--isovalue", type=float, required=True, action="append",
         help="in the image's units; may be given several times",
     )  # fmt: skip
-    command.add_argument(
-        "--rate", type=float,
-        help="compress a plain image first, to this many bits per sample, in (0, 32]",
-    )  # fmt: skip
-    _add_choice(command)
+    _add_array(command, "compress a plain image first, to this many bits per sample, in (0, 32]")
     command.add_argument("--no-normals", action="store_true", help="points and triangles alone")
     command.add_argument("--threads", type=int, default=0, help="0 (default) for one per core")
 
@@ -231,15 +225,17 @@ def _add_camera(command):
         "--orbit", type=_orbit, metavar="I/N", help="camera I of N around the volume, I from 0"
     )
     command.add_argument(
-        "--view", type=_vector, metavar="X,Y,Z", default=(0.45, 1.0, 0.3),
+        "--view", type=_vector, metavar="X,Y,Z",
         help="from the volume to the camera, without --orbit (default: 0.45,1,0.3); --view=-1,0,0",
     )  # fmt: skip
     command.add_argument(
-        "--up", type=_vector, metavar="X,Y,Z", default=(0.0, 0.0, 1.0),
+        "--up", type=_vector, metavar="X,Y,Z",
         help="what is up, without --orbit (default: 0,0,1)",
     )  # fmt: skip
-    command.add_argument("--zoom", type=float, default=1.0, help="without --orbit (default: 1)")
-    command.add_argument("--parallel", action="store_true", help="parallel projection")
+    command.add_argument("--zoom", type=float, help="without --orbit (default: 1)")
+    command.add_argument(
+        "--parallel", action="store_true", help="parallel projection, without --orbit"
+    )
 
 
 def _add_data(commands):
@@ -319,6 +315,8 @@ def _zfp_header(text):
 
 def _read(parsed, name="file"):
     path = getattr(parsed, name)
+    if parsed.zfp_header[0] and path.suffix.lower() != ".zfp":
+        raise ValueError(f"--zfp-header is for .zfp files, it does not go with '{path}'")
     with progress_bar(f"Reading {path.name}") as progress:
         return progiso.read(path, *parsed.zfp_header, progress=progress)
 
@@ -333,15 +331,26 @@ def _remark(text):
     print(f"progiso: note: {text}", file=sys.stderr)
 
 
+def _remark_on_compressed(image, parsed):
+    """Say what is ignored of what was asked for, where nothing is to be compressed."""
+    if not progiso.is_compressed(image):
+        return
+    about = progiso.describe(image)
+    for name in ("rate", "component"):
+        given, held = getattr(parsed, name), about[name]
+        if given not in (None, held):
+            _remark(f"--{name} {given:g} is ignored: the file is compressed, its {name} is {held:g}")
+
+
 def _compress(parsed):
     check_output(parsed.out, (".vti",) if parsed.appended else COMPRESSED_SUFFIXES)
     source = getattr(parsed, "in")
     with progress_bar(f"Compressing {source.name}") as progress:
         volume = progiso.compress_file(
             source,
-            parsed.rate,
+            _given(parsed.rate, 8.0),
             parsed.array,
-            parsed.component,
+            parsed.component or 0,
             parsed.threads,
             progress,
             parsed.mask_nan,
@@ -350,15 +359,27 @@ def _compress(parsed):
     if parsed.out.suffix.lower() == ".zfp":
         _remark("a .zfp file keeps the samples alone: no origin, no spacing, no array's name")
     about = progiso.describe(volume)
-    stream, rate = about["stream_bytes"], about["rate"]
-    print(f"{parsed.out}: {stream} bytes of compressed samples, {rate:g} bits per sample")
+    print(
+        f"{parsed.out}: {parsed.out.stat().st_size} bytes, {about['stream_bytes']} of compressed "
+        f"samples, {about['rate']:g} bits per sample"
+    )
+
+
+def _given(value, default):
+    return default if value is None else value
 
 
 def _rate(parsed):
     image = _read(parsed)
     with progress_bar("Trying rates") as progress:
         rate = progiso.least_rate(
-            image, parsed.tolerance, parsed.relative, parsed.array, parsed.component, progress, parsed.mask_nan
+            image,
+            parsed.tolerance,
+            parsed.relative,
+            parsed.array,
+            _given(parsed.component, 0),
+            progress,
+            parsed.mask_nan,
         )
     print(f"{rate:.9g}")  # of 64ths all digits, for `compress --rate`
 
@@ -374,7 +395,7 @@ def _decompress(parsed):
 
 def _info(parsed):
     image = _read(parsed)
-    about = _describe(image)
+    about = {"file bytes": parsed.file.stat().st_size, **_describe(image)}
     if parsed.json:
         print(json.dumps(about, indent=2))
         return
@@ -430,13 +451,14 @@ def _describe_arrays(attributes):
 def _contour(parsed):
     check_output(parsed.out, SURFACE_SUFFIXES)
     image = _read(parsed, "in")
+    _remark_on_compressed(image, parsed)
     with progress_bar("Contouring") as progress:
         surface = progiso.contour(
             image,
             parsed.isovalue,
             parsed.rate,
             parsed.array,
-            parsed.component,
+            parsed.component or 0,
             not parsed.no_normals,
             threads=parsed.threads,
             progress=progress,
@@ -455,15 +477,22 @@ def _render(parsed):
         check_output(path)
     if parsed.output is not None:
         check_output(parsed.output, (".png",))
+    if parsed.orbit is not None:
+        for name in ("view", "up", "zoom", "parallel"):
+            if getattr(parsed, name):
+                raise ValueError(f"--orbit is a whole camera, it does not go with --{name}")
     image = _read(parsed)
+    _remark_on_compressed(image, parsed)
     camera = None
     if parsed.orbit is None:
-        aspect = parsed.size[0] / max(1, parsed.size[1])
         camera = progiso.view_camera(
-            image, parsed.view, parsed.up, parsed.parallel, aspect, parsed.zoom
+            image,
+            parsed.view or (0.45, 1.0, 0.3),
+            parsed.up or (0.0, 0.0, 1.0),
+            parsed.parallel,
+            parsed.size[0] / max(1, parsed.size[1]),
+            _given(parsed.zoom, 1.0),
         )
-    elif parsed.parallel:
-        raise ValueError("--orbit is a perspective camera, it does not go with --parallel")
     with progress_bar("Rendering") as progress:
         result = progiso.render(
             image,
@@ -471,9 +500,9 @@ def _render(parsed):
             parsed.size,
             parsed.orbit,
             camera,
-            parsed.rate,
+            _given(parsed.rate, 8.0),
             parsed.array,
-            parsed.component,
+            parsed.component or 0,
             not parsed.no_speculation,
             parsed.color or "oldlace",
             parsed.background,

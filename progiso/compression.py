@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ._vtk import image_data, observe_progress, vtk_errors
+from .geometry import as_image
 from .vtkProgIsoFilters import vtkCompressedVolume, vtkImageZFPCompress, vtkImageZFPDecompress
 
 _POINTS, _CELLS = 0, 1  # vtkDataObject::FieldAssociations
@@ -20,8 +21,9 @@ def compress(
 
     Parameters
     ----------
-    image : vtkmodules.vtkCommonDataModel.vtkImageData
-        At least 2 samples along every axis.
+    image : vtkmodules.vtkCommonDataModel.vtkImageData or numpy.ndarray
+        At least 2 samples along every axis. An array is indexed [x, y, z], as pyvista's ``wrap``
+        takes it, and has unit spacing; pass ``array.T`` where z comes first.
     rate : float, default: 8
         Bits per sample, in (0, 32]; zfp rounds it to whole bits per block of 64 samples, at
         least 9 of them.
@@ -46,7 +48,7 @@ def compress(
     Raises
     ------
     TypeError
-        When `image` is no image.
+        When `image` is neither an image nor a three-dimensional array.
     ValueError
         When there is no such array or the rate is out of range.
     RuntimeError
@@ -56,12 +58,12 @@ def compress(
     Examples
     --------
     >>> import numpy as np, progiso
-    >>> image = progiso.image_from_array(np.arange(512.0), (8, 8, 8))
-    >>> volume = progiso.compress(image, rate=4)
+    >>> volume = progiso.compress(np.random.default_rng(1).random((8, 8, 8)), rate=4)
     >>> progiso.is_compressed(volume)
     True
     """
-    if is_compressed(image_data(image)):
+    image = as_image(image)
+    if is_compressed(image):
         raise RuntimeError("cannot compress: the image is a compressed volume already")
     if not 0 < rate <= 32:
         raise ValueError(f"rate must be in (0, 32] bits per sample, got {rate:g}")
@@ -166,7 +168,8 @@ def as_compressed(image, rate=8.0, array=None, component=0, progress=None, mask_
     ValueError
         When the image is a compressed volume of another array than the one asked for.
     """
-    if not is_compressed(image_data(image)):
+    image = as_image(image)
+    if not is_compressed(image):
         return compress(image, rate, array, component, progress=progress, mask_nan=mask_nan)
     held = describe(image)["array"]
     if array not in (None, held):

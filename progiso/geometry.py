@@ -6,6 +6,8 @@ import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
+from ._vtk import image_data
+
 
 def image_from_array(values, dimensions, name="scalars", components=1):
     """Wrap samples as the active point scalars of a `vtkImageData`, without copying them.
@@ -50,6 +52,47 @@ def image_from_array(values, dimensions, name="scalars", components=1):
     image.SetDimensions([int(n) for n in dimensions])
     image.GetPointData().SetScalars(array)
     return image
+
+
+def as_image(volume):
+    """Make an image of whatever may be passed for one.
+
+    Parameters
+    ----------
+    volume : vtkmodules.vtkCommonDataModel.vtkImageData or numpy.ndarray
+        An image, or the samples of one: a three-dimensional array that is indexed [x, y, z], as
+        pyvista's ``wrap`` takes it. Where z comes first, as in a stack of slices, pass ``array.T``.
+
+    Returns
+    -------
+    vtkmodules.vtkCommonDataModel.vtkImageData
+        The image itself; or one with unit spacing and its origin at zero, whose array is called
+        "values". Samples in Fortran's order, as those of ``array.T``, are not copied.
+
+    Raises
+    ------
+    TypeError
+        When it is neither, or the array has other dimensions or holds no real numbers.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> as_image(np.zeros((4, 3, 2))).GetDimensions()
+    (4, 3, 2)
+    """
+    if not isinstance(volume, np.ndarray):
+        return image_data(volume)
+    if volume.ndim != 3:
+        raise TypeError(f"an array must have 3 dimensions, this one has {volume.ndim}")
+    if volume.dtype.kind not in "biuf":
+        raise TypeError(f"an array must hold real numbers, this one has {volume.dtype}")
+    values = np.asarray(volume)
+    if values.dtype == bool:
+        values = values.view(np.uint8)
+    elif values.dtype.kind == "f" and values.dtype.itemsize not in (4, 8):  # VTK has no such type
+        values = values.astype(np.float32)
+    native = values.astype(values.dtype.newbyteorder("="), copy=False)
+    return image_from_array(native.ravel(order="F"), volume.shape, "values")
 
 
 def set_axes(image, axes, origin):

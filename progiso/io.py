@@ -13,8 +13,9 @@ from vtkmodules.vtkIOXML import (
 )
 
 from ._files import atomic_path, check_output
-from ._vtk import captured_output, image_data, observe_progress, vtk_errors
+from ._vtk import captured_output, observe_progress, vtk_errors
 from .compression import compress, is_compressed
+from .geometry import as_image
 from .metaimage import metaimage_slabs, read_metaimage, write_metaimage
 from .nifti import nifti_slabs, read_nibabel, read_nifti, write_nifti
 from .nrrd import nrrd_slabs, read_nrrd
@@ -243,8 +244,8 @@ def save(image, path, progress=None, appended=False):
 
     Parameters
     ----------
-    image : vtkmodules.vtkCommonDataModel.vtkImageData
-        Plain, or compressed (for ``.vti`` and ``.zfp``).
+    image : vtkmodules.vtkCommonDataModel.vtkImageData or numpy.ndarray
+        Plain, or compressed (for ``.vti`` and ``.zfp``). Arrays as in `compress`.
     path : str or os.PathLike
         ``.vti`` keeps everything. ``.zfp`` keeps a compressed volume's stream alone; reading it
         decodes the blocks once, in all cores, to find their range. ``.mha``, ``.nii`` and
@@ -277,7 +278,8 @@ def save(image, path, progress=None, appended=False):
     """
     check_output(path, _WRITERS)
     suffix = suffix_of(path)
-    compressed = is_compressed(image_data(image))
+    image = as_image(image)
+    compressed = is_compressed(image)
     if suffix == ".zfp" and not compressed:
         raise ValueError(
             f"'{path}': a .zfp file holds a compressed volume, compress the image first"

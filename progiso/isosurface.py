@@ -7,8 +7,8 @@ from numbers import Real
 
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction, vtkVolumeProperty
 
-from ._vtk import image_data
 from .appearance import MAX_ISOVALUES, as_list, check_count, is_color, set_colors, set_opacities
+from .geometry import as_image
 from .vtkProgIsoKernels import vtkIsosurfaceVolume, vtkProgressiveIsosurfaceMapper
 
 #: Most blocks that a ray tests ahead in one pass.
@@ -34,8 +34,9 @@ def make_isosurface(
 
     Parameters
     ----------
-    image : vtkmodules.vtkCommonDataModel.vtkImageData
-        Plain (then compressed by the mapper at `rate`), or a compressed volume.
+    image : vtkmodules.vtkCommonDataModel.vtkImageData or numpy.ndarray
+        Plain (then compressed by the mapper at `rate`), or a compressed volume. Arrays as in
+        `compress`.
     isovalue : float or sequence of float
         In the units of the image's values; at most 16.
     color : sequence of 3 float, a sequence of such, or vtkColorTransferFunction, default: white
@@ -67,7 +68,7 @@ def make_isosurface(
     Raises
     ------
     TypeError
-        When `image` is no image.
+        When `image` is neither an image nor an array.
     ValueError
         When a number is out of its range.
 
@@ -81,7 +82,7 @@ def make_isosurface(
     >>> renderer.AddVolume(progiso.make_isosurface(image, 0.8, color=(0.9, 0.85, 0.75)))
     """
     mapper = vtkProgressiveIsosurfaceMapper()
-    mapper.SetInputData(image_data(image))
+    mapper.SetInputData(as_image(image))
     mapper.SetRate(_in_range("rate", rate, 0, 32, above=True))
     mapper.SetMaskNonFinite(bool(mask_nan))
     mapper.SetLitLikeMeshes(True)  # it takes the place of a contour's mesh

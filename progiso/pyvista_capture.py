@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import weakref
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 
 #: A plotter's methods that take a picture of what the window holds.
 _CAPTURES = ("screenshot", "write_frame", "get_image_depth")
@@ -14,16 +14,33 @@ def complete_captures(plotter):
     """Let a plotter's pictures wait until the image is complete.
 
     pyvista reads a window without rendering it again, and has no hook before that: the plotter's
-    own methods are wrapped.
+    own methods are wrapped. trame renders a window once for each picture that a browser gets, and
+    keeps its interactor from rendering: such renders are complete too.
 
     Parameters
     ----------
     plotter : pyvista.BasePlotter
-        Wrapped once, however often it is passed.
+        Prepared once, however often it is passed.
     """
+    if _CAPTURES[0] in vars(plotter):
+        return
     for name in _CAPTURES:
-        if name not in vars(plotter):
-            setattr(plotter, name, _completing(plotter, name))
+        setattr(plotter, name, _completing(plotter, name))
+    if plotter.render_window is not None:
+        _complete_where_nobody_refines(plotter)
+
+
+def _complete_where_nobody_refines(plotter):
+    """Complete every image whose window's interactor is forbidden to render the next."""
+    owner, renders = weakref.ref(plotter), ExitStack()  # the window holds the functions
+
+    def start(window, _event):
+        interactor = window.GetInteractor()
+        if interactor is not None and not interactor.GetEnableRender():
+            renders.enter_context(_complete_renders(owner()))
+
+    plotter.render_window.AddObserver("StartEvent", start)
+    plotter.render_window.AddObserver("EndEvent", lambda *_: renders.close())
 
 
 def _completing(plotter, name):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from numbers import Real
-from pathlib import Path
 
 import numpy as np
 import pyvista
@@ -67,7 +66,7 @@ def add_isosurface(
     plotter : pyvista.BasePlotter
         Where to add them.
     volume : pyvista.ImageData or numpy.ndarray
-        A plain image, a compressed volume, or a three-dimensional array. Plain data are
+        A plain image, a compressed volume, or a three-dimensional array [x, y, z]. Plain data are
         compressed at `rate`.
     isovalue : float or sequence of float
         In the units of the volume's values; at most 16. A whole number is an isovalue too, not a
@@ -151,7 +150,7 @@ def add_isosurface(
 
     >>> prop = progiso.add_isosurface(plotter, image, [10, 20], cmap="plasma", opacity=[1, 0.3])
     """
-    image = _compressed(volume, rate, scalars, component, mask_nan)
+    image = as_compressed(volume, rate, scalars, component, mask_nan=mask_nan)
     table = None
     if cmap is not None or (color is None and not isinstance(isovalue, Real)):
         if color is not None:
@@ -197,12 +196,12 @@ def _warn_of_nothing(prop, image):
 
 def add_isosurface_slider(plotter, volume, rng=None, value=None, **kwargs):
     """Add an isosurface with a slider; see :meth:`IsosurfaceComponent.add_isosurface_slider`."""
-    image = _compressed(
+    image = as_compressed(
         volume,
         kwargs.pop("rate", 8.0),
         kwargs.pop("scalars", None),
         kwargs.pop("component", 0),
-        kwargs.pop("mask_nan", False),
+        mask_nan=kwargs.pop("mask_nan", False),
     )
     about = describe(image)
     low, high = about["range"] if rng is None else rng
@@ -291,20 +290,6 @@ def _add_scalar_bar(plotter, table, title, arguments):
 
 
 # ---- what else is passed
-
-
-def _compressed(volume, rate, scalars, component, mask_nan):
-    """The compressed volume of whatever was passed."""
-    if isinstance(volume, np.ndarray):
-        if volume.ndim != 3:
-            raise TypeError(f"an array must have 3 dimensions, this one has {volume.ndim}")
-        volume = pyvista.wrap(volume)
-    if not getattr(volume, "IsA", lambda _: False)("vtkImageData"):
-        hint = ": progiso.read makes an image of a file" if isinstance(volume, (str, Path)) else ""
-        raise TypeError(
-            f"expected pyvista.ImageData or an array, got {type(volume).__name__}{hint}"
-        )
-    return as_compressed(volume, rate, scalars, component, mask_nan=mask_nan)
 
 
 def _matrix(transform):

@@ -15,10 +15,11 @@ from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
 from ._files import atomic_path
 from ._opengl import check_display
-from ._vtk import image_data, vtk_errors
+from ._vtk import vtk_errors
 from .appearance import as_list, is_color
 from .camera import orbit_camera, view_camera
 from .compression import as_compressed
+from .geometry import as_image
 from .isosurface import make_isosurface
 from .statistics import depth, statistics
 
@@ -69,8 +70,8 @@ def render(
 
     Parameters
     ----------
-    image : vtkmodules.vtkCommonDataModel.vtkImageData
-        Plain, or a compressed volume.
+    image : vtkmodules.vtkCommonDataModel.vtkImageData or numpy.ndarray
+        Plain, or a compressed volume. Arrays as in `compress`.
     isovalue : float or sequence of float
         In the units of the image's values; at most 16.
     size : tuple of int, default: (1280, 720)
@@ -124,8 +125,9 @@ def render(
     width, height = _checked_size(size)
     if orbit is not None and camera is not None:
         raise ValueError("give either an orbit or a camera, not both")
+    image = as_image(image)
     if orbit is not None:
-        camera = orbit_camera(image_data(image), *orbit)
+        camera = orbit_camera(image, *orbit)
     image = as_compressed(image, rate, array, component, progress, mask_nan)
     volume = make_isosurface(
         image,

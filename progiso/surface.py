@@ -14,9 +14,9 @@ from vtkmodules.vtkIOPLY import vtkPLYWriter
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 from ._files import atomic_path, check_output
-from ._vtk import image_data, observe_progress, vtk_errors
+from ._vtk import observe_progress, vtk_errors
 from .compression import as_compressed, find_array, is_compressed
-from .geometry import cell_centres
+from .geometry import as_image, cell_centres
 from .vtkProgIsoFilters import vtkZFPContour
 
 
@@ -41,8 +41,8 @@ def contour(
 
     Parameters
     ----------
-    image : vtkmodules.vtkCommonDataModel.vtkImageData
-        Plain, or a compressed volume; at least 2 samples along every axis.
+    image : vtkmodules.vtkCommonDataModel.vtkImageData or numpy.ndarray
+        Plain, or a compressed volume; at least 2 samples along every axis. Arrays as in `compress`.
     isovalues : float or sequence of float
         In the units of the image's values.
     rate : float, optional
@@ -71,7 +71,7 @@ def contour(
     Raises
     ------
     TypeError
-        When `image` is no image, or an isovalue is no number.
+        When `image` is neither an image nor an array, or an isovalue is no number.
     ValueError
         When there is no isovalue, one is not finite, there is no such array or component, the image
         is flat, the rate is out of range, or missing where NaN is to be hidden.
@@ -88,11 +88,12 @@ def contour(
     True
     """
     values = _isovalues(isovalues)
-    if mask_nan and rate is None and not is_compressed(image_data(image)):
+    image = as_image(image)
+    if mask_nan and rate is None and not is_compressed(image):
         raise ValueError("mask_nan takes a rate: the contour of a plain image hides nothing")
     if rate is not None:
         image = as_compressed(image, rate, array, component, mask_nan=mask_nan)
-    if is_compressed(image_data(image)):
+    if is_compressed(image):
         as_compressed(image, array=array)  # refuses another array than the one it has
         extractor = vtkZFPContour()
         extractor.SetNumberOfThreads(threads)

@@ -6,9 +6,13 @@
 #include "vtkObjectFactory.h"
 #include "vtkPVIsosurfaceInformation.h"
 #include "vtkPVSession.h"
+#include "vtkSMDoubleRangeDomain.h"
+#include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 
+#include <algorithm>
 #include <cstring>
+#include <vector>
 
 vtkStandardNewMacro(vtkSMProgressiveIsosurfaceRepresentationProxy);
 
@@ -42,7 +46,31 @@ void vtkSMProgressiveIsosurfaceRepresentationProxy::OnImage()
   if (this->IsActive())
   {
     this->UpdatePropertyInformation();
+    this->WarnOfNothing();
   }
+}
+
+//------------------------------------------------------------------------------
+void vtkSMProgressiveIsosurfaceRepresentationProxy::WarnOfNothing()
+{
+  vtkSMProperty* property = this->GetProperty("Isovalues");
+  auto* domain =
+    vtkSMDoubleRangeDomain::SafeDownCast(property->FindDomain("vtkSMDoubleRangeDomain"));
+  int hasLowest = 0, hasHighest = 0;
+  const double lowest = domain ? domain->GetMinimum(0, hasLowest) : 0.0;
+  const double highest = domain ? domain->GetMaximum(0, hasHighest) : 0.0;
+  const std::vector<double> values = vtkSMPropertyHelper(property).GetDoubleArray();
+  const bool outside = hasLowest && hasHighest &&
+    std::none_of(values.begin(), values.end(),
+      [=](double value) { return lowest <= value && value <= highest; });
+  if (outside && !this->Warned && vtkSMPropertyHelper(this, "Visibility").GetAsInt() != 0)
+  {
+    vtkWarningMacro(
+      "Progressive Isosurface: nothing shows, the isovalues lie outside the values of "
+      "the array, "
+      << lowest << " to " << highest << ".");
+  }
+  this->Warned = outside;
 }
 
 //------------------------------------------------------------------------------
@@ -94,4 +122,5 @@ void vtkSMProgressiveIsosurfaceRepresentationProxy::PrintSelf(ostream& os, vtkIn
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "View: " << this->View << "\n";
+  os << indent << "Warned: " << this->Warned << "\n";
 }

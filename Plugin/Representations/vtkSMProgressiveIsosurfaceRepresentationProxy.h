@@ -9,7 +9,7 @@
  * of the view that shows it. It asks all processes that draw, wherever they are: ParaView's own way
  * ends at the client, which in remote rendering draws nothing. What they say is in the information
  * properties and, pass by pass, in GetStatistics(); observers hear of news by
- * UpdateInformationEvent.
+ * UpdateInformationEvent. It warns, once, where no isovalue lies in the array's range.
  */
 
 #ifndef vtkSMProgressiveIsosurfaceRepresentationProxy_h
@@ -49,11 +49,15 @@ private:
   /// active.
   bool IsActive();
 
+  /// Says so where all isovalues lie outside the values of the array, as soon as they do.
+  void WarnOfNothing();
+
   void StopObserving();
 
   vtkNew<vtkPVIsosurfaceInformation> Statistics;
   vtkWeakPointer<vtkSMProxy> View;
   unsigned long ImageObserver = 0;
+  bool Warned = false;
 
   vtkSMProgressiveIsosurfaceRepresentationProxy(
     const vtkSMProgressiveIsosurfaceRepresentationProxy&) = delete;

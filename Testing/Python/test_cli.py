@@ -63,6 +63,14 @@ def test_compress_appended(folder):
     )
 
 
+def test_bytes_of_files(folder):
+    """Of the whole file, and of the samples in it."""
+    text = call(folder, "compress", "plain.vti", "sized.vti", "--rate", 6)
+    size, stream = (folder / "sized.vti").stat().st_size, 10 * 9 * 11 * 64 * 6 // 8
+    assert f": {size} bytes, {stream} of compressed samples, 6 bits" in text
+    assert json.loads(call(folder, "info", "sized.vti", "--json"))["file bytes"] == size > stream
+
+
 def test_info(folder):
     plain, packed = call(folder, "info", "plain.vti"), call(folder, "info", "packed.vti")
     for text in (plain, packed):
@@ -85,10 +93,14 @@ def test_notes(folder):
         (("compress", "plain.vti", "noted.zfp"), "no spacing"),
         (("contour", "packed.vti", "noted.vtp", "--isovalue", 1e6), "range"),
         (("render", "packed.vti", "--isovalue", 1e6, "--size", "64x48"), "range"),
+        (("render", "packed.vti", "--isovalue", 0.1, "--size", "64x48", "--rate", 3), "--rate 3 is ignored"),
+        (("contour", "packed.vti", "noted.vtp", "--isovalue", 0.1, "--component", 1), "--component 1 is ignored"),
     ):
         done = run(folder, *arguments)
         assert done.returncode == 0, done.stderr
         assert "note: " in done.stderr and words in done.stderr
+    quiet = run(folder, "render", "packed.vti", "--isovalue", 0.1, "--size", "64x48", "--rate", 6)
+    assert quiet.stderr == ""
 
 
 def render(folder, file, *arguments):
@@ -206,6 +218,9 @@ FAILURES = {
     "decompress plain": (["decompress", "plain.vti", "x.vti"], "compressed"),
     "size": (["render", "packed.vti", "--isovalue", "0", "--size", "0x5"], "0x5"),
     "orbit": (["render", "packed.vti", "--isovalue", "0", "--orbit", "5/5"], "5/5"),
+    "orbit and zoom": (["render", "packed.vti", "--isovalue", "0", "--orbit", "0/5", "--zoom", "2"], "--zoom"),
+    "orbit and parallel": (["render", "packed.vti", "--isovalue", "0", "--orbit", "0/5", "--parallel"], "--parallel"),
+    "zfp header": (["info", "packed.vti", "--zfp-header", "4x4x4:8"], "--zfp-header"),
     "budget": (["render", "packed.vti", "--isovalue", "0", "--memory-budget", "1000"], "at least"),
     "budget's unit": (["render", "packed.vti", "--isovalue", "0", "--memory-budget", "3T"], "3T"),
     "isovalue": (["render", "packed.vti", "--isovalue", "nan"], "isovalue"),

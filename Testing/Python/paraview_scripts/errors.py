@@ -1,6 +1,6 @@
 """Inputs that cannot be drawn: one error that says why, an empty image, and no crash."""
 
-from common import PROGRESSIVE_ISOSURFACE, covered, finish, load_plugin, make_view, make_wavelet, screenshot
+from common import PROGRESSIVE_ISOSURFACE, covered, finish, load_plugin, make_view, make_wavelet, screenshot, show_isosurface
 from paraview import simple
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 
@@ -54,5 +54,19 @@ bits.InsertNextValue(5)
 image.GetFieldData().AddArray(bits)
 """
 check_refused(damaged, "Progressive Isosurface: ", "errors_damaged.png")
+
+# isovalues that no sample has: a warning, not an error, once until one is in the range again
+usual, listener = vtkOutputWindow.GetInstance(), vtkStringOutputWindow()
+vtkOutputWindow.SetInstance(listener)
+display = show_isosurface(make_wavelet(), view, Isovalues=[150.0])
+warnings = []
+for isovalues in ([150.0], [1000.0], [2000.0, -5.0], [2000.0, 150.0], [-5.0]):
+    display.Isovalues = isovalues
+    simple.Render(view)
+    simple.Render(view)
+    warnings.append(listener.GetOutput().count("outside the values of the array, 33.9"))
+vtkOutputWindow.SetInstance(usual)
+assert warnings == [0, 1, 1, 1, 2], (warnings, listener.GetOutput())
+assert "ERROR" not in listener.GetOutput()
 
 finish(messages="seen")
