@@ -114,9 +114,7 @@ def _heading(document):
         "",
         describe(document["machine"]),
         "",
-        "Times are wall clock from the call of `Render()` to the end of the GPU's work.",
-        "",
-        *_warning(document),
+        *_about_times(document),
     ]
     rows = [
         [
@@ -130,13 +128,18 @@ def _heading(document):
     return lines + table(["command", "commit", "started", "took"], rows)
 
 
-def _warning(document):
-    """Say when figures cannot be relied on."""
-    records = [r for records in document["measurements"].values() for r in records]
+def _about_times(document):
+    """What times are, and whether they can be relied on; nothing where there are none."""
+    measured = document["measurements"]
+    records = [r for kind, records in measured.items() if kind not in _UNTIMED for r in records]
+    if not records:
+        return []
+    lines = ["Times are wall clock from the call of `Render()` to the end of the GPU's work.", ""]
     busy = [r["others_cores"] for r in records if goals.is_busy(document["machine"], r)]
     if not busy:
-        return []
+        return lines
     return [
+        *lines,
         f"**The machine was busy**: other processes took up to {number(max(busy))} of its "
         f"{document['machine']['cores']} cores during {len(busy)} of {len(records)} "
         "measurements. Their times are too long, and not all by the same factor: do not compare "
@@ -656,6 +659,9 @@ def _budget_cells(point):
     sizes = bytes_(point["beside"]), bytes_(point["total"])
     return [*sizes, number(point["passes"]), *times]
 
+
+#: Kinds of measurements that tell no time.
+_UNTIMED = {"rates"}
 
 _SECTIONS = {
     "peers": _peers,

@@ -18,8 +18,7 @@ from .scene import check_depths, compressed, decoded
 
 _ISOVALUE = 0.5
 
-#: The least of the bits per sample is 9/64.
-_RATES = (9 / 64, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32)
+_RATES = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32)
 
 
 def _sheet(n):
@@ -58,7 +57,7 @@ def _figure(value):
 
 
 CASES = tuple(
-    Case(f"{name}, {rate:.3g} bits", partial(_rate, field, rate), field is _sheet and rate in (1, 8))
+    Case(f"{name}, rate {rate}", partial(_rate, field, rate), field is _sheet and rate in (1, 8))
     for name, field in (("Marschner-Lobb", marschner_lobb), ("sheet of one sample", _sheet))
     for rate in _RATES
 )
