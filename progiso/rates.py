@@ -153,7 +153,7 @@ def _search(errors, tolerance, progress):
 
 
 def _bisect(error, too_few, tolerance):
-    """The bits with which an error is within the tolerance, more than those with which it is not."""
+    """The bits with which an error is within the tolerance, more than those that do not do."""
     enough, least = MOST_BITS, error(MOST_BITS)
     if least > tolerance:
         raise ValueError(

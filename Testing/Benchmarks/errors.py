@@ -60,7 +60,10 @@ def measure_errors(field, settings, rates=RATES, distances=SAMPLE_DISTANCES):
         source), and ``series``: {name: points}, each with ``label``, ``ms`` and `depth_error`'s
         figures. With ``left_out`` there is no image.
     """
-    return of_one_image(field, settings, lambda: _Measurement(field, settings).run(rates, distances))
+    def measure():
+        return _Measurement(field, settings).run(rates, distances)
+
+    return of_one_image(field, settings, measure)
 
 
 def of_one_image(field, settings, measure):
@@ -87,7 +90,7 @@ def of_one_image(field, settings, measure):
 
 
 def cast_uncompressed(field, settings):
-    """The caster's image of the uncompressed samples, between the clipping planes of ProgIso's view.
+    """The caster's image of the uncompressed samples, within the clipping planes of ProgIso's view.
 
     Parameters
     ----------

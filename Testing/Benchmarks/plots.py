@@ -254,8 +254,8 @@ def _draw_rates(records):
         points = [point for point in record.get("points", []) if point["p99"]]
         name = record["field"].rsplit("-r", 1)[0]
         for axes, key, scale in ((upper, "p99", 1), (lower, "wrong", 100)):
-            x, y = zip(*((p["rate"], scale * p[key]) for p in points if p[key])) if points else ((), ())
-            axes.plot(x, y, color=color, marker=marker, label=name)
+            shown = [(point["rate"], scale * point[key]) for point in points if point[key]]
+            axes.plot(*np.array(shown).reshape(-1, 2).T, color=color, marker=marker, label=name)
     for axes in (upper, lower):
         axes.set_yscale("log")
         _log(axes.yaxis)

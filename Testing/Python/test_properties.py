@@ -77,7 +77,7 @@ def same_pictures(scene, other):
     assert other.picture().tobytes() == scene.picture().tobytes()
 
 
-# --- division of the work, and repetition ------------------------------------------------------------------------------------------
+# --- division of the work, and repetition ------------------------------------------------------------------------------------
 
 
 @given(
@@ -129,7 +129,7 @@ def pictures_of_every_kind():
     return content
 
 
-# --- how the volume lies -----------------------------------------------------------------------------------------------------------
+# --- how the volume lies -----------------------------------------------------------------------------------------------------
 
 #: An axis that goes the other way has its origin at its other end.
 AXES = st.permutations(range(3)).map(tuple)
@@ -205,7 +205,7 @@ def check_same_surface(scenes, volume, kind):
     assert np.abs(np.subtract(*colors)).max(initial=0) <= tolerances.LIE_LEVELS
 
 
-# --- no cracks ---------------------------------------------------------------------------------------------------------------------
+# --- no cracks ---------------------------------------------------------------------------------------------------------------
 
 CLOSED = st.sampled_from([(kind, rate) for kind in cracks.RATES for rate in cracks.RATES[kind]])
 

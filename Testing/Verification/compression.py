@@ -1,4 +1,4 @@
-"""Rates from 1 to 32: the picture is that of the decoded samples, and the notes tell what those are worth."""
+"""Rates from 1 to 32: the picture is that of the decoded samples; the notes tell their worth."""
 
 from __future__ import annotations
 

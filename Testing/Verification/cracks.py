@@ -1,9 +1,10 @@
 """Does a ray slip through a closed surface? Where rays must hit is known here without casting any.
 
-A random field has a *core*, a box whose samples are all at least the isovalue, and around it a closed
-skin of samples that are all below. Between them the trilinear surface has no hole. So a camera in
-the core must see a surface at every pixel; one outside must see one wherever the ray meets the core,
-and nothing where it misses the volume. That the samples are so is checked as they are decoded.
+A random field has a *core*, a box whose samples are all at least the isovalue, and around it a
+closed skin of samples that are all below. Between them the trilinear surface has no hole. So a
+camera in the core must see a surface at every pixel; one outside must see one wherever the ray
+meets the core, and nothing where it misses the volume. That the samples are so is checked as they
+are decoded.
 """
 
 from __future__ import annotations
@@ -78,8 +79,8 @@ def closed_field(kind, shape, seed):
     ----------
     kind : str
         ``noise``, white noise around a small core; ``smooth``, a ball with waves; ``hollow``, noise
-        that is above the isovalue but for the outermost samples; ``thin``, the same on both sides of
-        a box that is one sample thick and hardly below the isovalue.
+        that is above the isovalue but for the outermost samples; ``thin``, the same on both sides
+        of a box that is one sample thick and hardly below the isovalue.
     shape : tuple of int
         Samples along z, y and x, at least 9.
     seed : int
@@ -135,7 +136,7 @@ _KINDS = {"noise": _noise, "smooth": _smooth, "hollow": _hollow, "thin": _thin}
 
 
 def _random_box(rng, shape, width):
-    """First and last samples along x, y, z of a box of some width, at least 3, off the border by 2."""
+    """First and last samples of a box of some width, at least 3, off the border by 2."""
     sizes = np.array(shape[::-1])
     widths = rng.integers(3, sizes - 3) if width is None else np.full(3, width)
     low = rng.integers(2, sizes - 1 - widths)
