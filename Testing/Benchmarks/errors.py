@@ -60,6 +60,7 @@ def measure_errors(field, settings, rates=RATES, distances=SAMPLE_DISTANCES):
         source), and ``series``: {name: points}, each with ``label``, ``ms`` and `depth_error`'s
         figures. With ``left_out`` there is no image.
     """
+
     def measure():
         return _Measurement(field, settings).run(rates, distances)
 
