@@ -533,10 +533,12 @@ struct vtkZFPBlocks::Encoder
 
   float Value(vtkTypeInt64 first, int x, int y, int z) const
   {
-    const auto value = this->At(first, x, y, z);
-    return static_cast<float>(this->Own
-        ? value
-        : (static_cast<double>(value) - this->InUnits.Offset) / this->InUnits.Scale);
+    if (this->Own)
+    {
+      return static_cast<float>(this->At(first, x, y, z));
+    }
+    const double value = static_cast<double>(this->At(first, x, y, z));
+    return static_cast<float>((value - this->InUnits.Offset) / this->InUnits.Scale);
   }
 
   decltype(vtk::DataArrayValueRange(std::declval<ArrayT*>())) Values;

@@ -43,7 +43,8 @@ def compress(
     -------
     vtkmodules.vtkCommonDataModel.vtkImageData
         A compressed volume: the same geometry and no scalars, the stream in the field data.
-        Any VTI writer stores it.
+        Any VTI writer stores it. Where float32 cannot hold the values (small differences on a large
+        value, 1e300, denormals) the stream has units of its own, see `describe`.
 
     Raises
     ------
@@ -120,7 +121,7 @@ def find_array(image, array=None):
 
 
 def decompress(image, threads=0, progress=None):
-    """Decompress a compressed volume into float32 scalars.
+    """Decompress a compressed volume into scalars: float32, or float64 where its stream has units.
 
     Parameters
     ----------
