@@ -12,7 +12,6 @@
 #include "vtkObjectFactory.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
-#include "vtkStructuredData.h"
 #include "vtkTypeInt64Array.h"
 #include "vtkTypeUInt64Array.h"
 #include "vtkUnsignedCharArray.h"
@@ -132,6 +131,14 @@ bool IsNumericType(int type)
     default:
       return false;
   }
+}
+
+//------------------------------------------------------------------------------
+// Whether sums and differences of positions in an extent do not overflow.
+bool IsBounded(vtkTypeInt64 low, vtkTypeInt64 high)
+{
+  const vtkTypeInt64 most = vtkTypeInt64(1) << 30;
+  return -most <= low && low <= most && -most <= high && high <= most;
 }
 
 //------------------------------------------------------------------------------
@@ -340,11 +347,10 @@ void vtkCompressedVolume::FindExtent(vtkImageData* image, const vtkTypeInt64 dim
   const int cells = this->Association == CellData ? 1 : 0;
   const auto fits = [&](const vtkTypeInt64* extent)
   {
-    const vtkTypeInt64 most = std::numeric_limits<int>::max() / 2;
     for (int axis = 0; axis < 3; ++axis)
     {
       const vtkTypeInt64 low = extent[2 * axis], high = extent[2 * axis + 1];
-      if (low < -most || high > most || high - low + 1 - cells != dims[axis])
+      if (!IsBounded(low, high) || high - low + 1 - cells != dims[axis])
       {
         return false;
       }
@@ -374,8 +380,8 @@ std::string vtkCompressedVolume::CheckGeometry(vtkImageData* image)
   std::ostringstream message;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const vtkTypeInt64 expected = static_cast<vtkTypeInt64>(this->Extent[2 * axis + 1]) -
-      this->Extent[2 * axis] + (cells ? 0 : 1);
+    const vtkTypeInt64 low = this->Extent[2 * axis], high = this->Extent[2 * axis + 1];
+    const vtkTypeInt64 expected = high - low + (cells ? 0 : 1);
     if (dims[axis] != expected)
     {
       message << DimensionsName << " is " << dims[axis] << " along axis " << axis
@@ -386,6 +392,12 @@ std::string vtkCompressedVolume::CheckGeometry(vtkImageData* image)
     {
       message << "it has " << expected << (cells ? " cells" : " points") << " along axis " << axis
               << ", at least 2 and at most 2^31-1 are needed";
+      return message.str();
+    }
+    if (!IsBounded(low, high))
+    {
+      message << "its extent along axis " << axis << ", " << low << " to " << high
+              << ", reaches beyond -2^30 or 2^30";
       return message.str();
     }
   }
@@ -533,7 +545,9 @@ void vtkCompressedVolume::GetOwnExtent(vtkImageData* image, int own[6])
 {
   image->GetExtent(own);
   vtkUnsignedCharArray* ghosts = image->GetCellGhostArray();
-  if (!ghosts || image->GetNumberOfPoints() == 0)
+  // marks of another image say nothing about this one
+  if (!ghosts || image->GetNumberOfPoints() <= 0 ||
+    ghosts->GetNumberOfValues() != image->GetNumberOfCells())
   {
     return;
   }
@@ -552,13 +566,16 @@ void vtkCompressedVolume::GetOwnExtent(vtkImageData* image, int own[6])
   {
     --last;
   }
-  int low[3], high[3];
-  vtkStructuredData::ComputeCellStructuredCoordsForExtent(first - begin, image->GetExtent(), low);
-  vtkStructuredData::ComputeCellStructuredCoordsForExtent(last - begin, image->GetExtent(), high);
+  // not by vtkStructuredData, whose cells of a slice overflow 32 bits
+  vtkTypeInt64 low = first - begin, high = last - begin;
   for (int axis = 0; axis < 3; ++axis)
   {
-    own[2 * axis] = low[axis];
-    own[2 * axis + 1] = std::min(high[axis] + 1, own[2 * axis + 1]);
+    const vtkTypeInt64 start = own[2 * axis], end = own[2 * axis + 1];
+    const vtkTypeInt64 cells = std::max<vtkTypeInt64>(end - start, 1);
+    own[2 * axis] = static_cast<int>(start + low % cells);
+    own[2 * axis + 1] = static_cast<int>(std::min(start + high % cells + 1, end));
+    low /= cells;
+    high /= cells;
   }
 }
 

@@ -11,6 +11,7 @@
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkZFPBlocks.h"
+#include "vtkZFPMemory.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +26,6 @@ struct vtkCompressedVolumeBuilder::Work
     : BlockBits(blockBits)
   {
     std::copy_n(dims, 3, this->Dimensions);
-    this->Stream->SetNumberOfValues(vtkCompressedVolume::StreamBytesFor(dims, blockBits));
   }
 
   vtkTypeInt64 SamplesPerSlice() const
@@ -96,6 +96,11 @@ bool vtkCompressedVolumeBuilder::Start(const int dims[3], double rate)
     return this->Refuse(error.str());
   }
   this->Volume = std::make_unique<Work>(dims, blockBits);
+  const vtkTypeInt64 bytes = vtkCompressedVolume::StreamBytesFor(dims, blockBits);
+  if (!vtkZFPMemory::Allocate(this->Volume->Stream.Get(), bytes))
+  {
+    return this->Refuse("There is " + vtkZFPMemory::Objection("the stream", dims, bytes) + ".");
+  }
   this->ErrorMessage.clear();
   return true;
 }

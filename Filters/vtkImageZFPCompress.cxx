@@ -17,6 +17,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkZFPBlocks.h"
+#include "vtkZFPMemory.h"
 
 #include <algorithm>
 #include <cstring>
@@ -106,10 +107,12 @@ constexpr unsigned char HidingCell =
   vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::REFINEDCELL;
 
 //------------------------------------------------------------------------------
-// An image's ghost array, or null where no tuple has such a flag.
-vtkUnsignedCharArray* FindHiding(vtkUnsignedCharArray* ghosts, unsigned char hiding)
+// An image's ghost array, or null where no tuple has such a flag, or they are not one for each of
+// `number` points or cells.
+vtkUnsignedCharArray* FindHiding(
+  vtkUnsignedCharArray* ghosts, vtkIdType number, unsigned char hiding)
 {
-  if (!ghosts)
+  if (!ghosts || ghosts->GetNumberOfComponents() != 1 || ghosts->GetNumberOfTuples() != number)
   {
     return nullptr;
   }
@@ -298,10 +301,11 @@ vtkSmartPointer<vtkUnsignedCharArray> vtkImageZFPCompress::Part::HiddenSamples(
   vtkImageData* input) const
 {
   vtkSmartPointer<vtkUnsignedCharArray> flags =
-    FindHiding(input->GetPointGhostArray(), HidingPoint);
+    FindHiding(input->GetPointGhostArray(), input->GetNumberOfPoints(), HidingPoint);
   if (this->Association == vtkCompressedVolume::CellData)
   {
-    flags = HideCells(flags, FindHiding(input->GetCellGhostArray(), HidingCell), this->Input);
+    flags = HideCells(flags,
+      FindHiding(input->GetCellGhostArray(), input->GetNumberOfCells(), HidingCell), this->Input);
   }
   return flags ? vtkUnsignedCharArray::SafeDownCast(this->Samples(flags)) : nullptr;
 }
@@ -309,7 +313,8 @@ vtkSmartPointer<vtkUnsignedCharArray> vtkImageZFPCompress::Part::HiddenSamples(
 //------------------------------------------------------------------------------
 vtkBlockMask vtkImageZFPCompress::Part::HiddenCells(vtkImageData* input) const
 {
-  vtkUnsignedCharArray* flags = FindHiding(input->GetCellGhostArray(), HidingCell);
+  vtkUnsignedCharArray* flags =
+    FindHiding(input->GetCellGhostArray(), input->GetNumberOfCells(), HidingCell);
   if (!flags || this->Association == vtkCompressedVolume::CellData)
   {
     return vtkBlockMask();
@@ -442,7 +447,12 @@ bool vtkImageZFPCompress::Compress(
   vtkZFPBlocks::Units units = vtkZFPBlocks::Units::Find(samples, this->Component, hidden);
   const int blockBits = vtkCompressedVolume::BlockBitsForRate(this->Rate);
   vtkNew<vtkUnsignedCharArray> stream;
-  stream->SetNumberOfValues(vtkCompressedVolume::StreamBytesFor(dims, blockBits));
+  const vtkTypeInt64 bytes = vtkCompressedVolume::StreamBytesFor(dims, blockBits);
+  if (!vtkZFPMemory::Allocate(stream.Get(), bytes))
+  {
+    vtkErrorMacro("There is " << vtkZFPMemory::Objection("the stream", dims, bytes) << ".");
+    return false;
+  }
   vtkZFPBlocks blocks(dims, blockBits, stream->GetPointer(0), this->NumberOfThreads);
   vtkZFPBlocks::Summary summary;
   const auto encode = [&]()

@@ -17,6 +17,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkZFPBlocks.h"
+#include "vtkZFPMemory.h"
 
 #include <algorithm>
 #include <limits>
@@ -161,7 +162,13 @@ int vtkImageZFPDecompress::RequestData(
   volume->GetDimensions(dims);
   vtkNew<vtkFloatArray> stored;
   stored->SetName(volume->GetArrayName().c_str());
-  stored->SetNumberOfValues(static_cast<vtkIdType>(dims[0]) * dims[1] * dims[2]);
+  const vtkTypeInt64 count = static_cast<vtkTypeInt64>(dims[0]) * dims[1] * dims[2];
+  if (!vtkZFPMemory::Allocate(stored.Get(), count))
+  {
+    vtkErrorMacro("There is " << vtkZFPMemory::Objection("the values", dims, 4 * count) << ".");
+    this->SetErrorCode(vtkErrorCode::UserError);
+    return 1;
+  }
 
   const auto stream = vtkZFPBlocks::Align(volume->GetStream());
   vtkZFPBlocks blocks(dims, volume->GetBlockBits(), stream->GetPointer(0), this->NumberOfThreads);

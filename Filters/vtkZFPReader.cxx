@@ -12,6 +12,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkZFPBlocks.h"
+#include "vtkZFPMemory.h"
 
 #include <zfp.h>
 
@@ -32,6 +33,7 @@ struct vtkZFPReader::Layout
   int BlockBits = 0;
   int HeaderBits = 0; // the stream begins right behind them
 
+  // where CheckLayout() finds nothing wrong
   vtkTypeInt64 PayloadBits() const
   {
     return vtkCompressedVolume::NumberOfBlocksFor(this->Dimensions) * this->BlockBits;
@@ -202,7 +204,8 @@ std::string vtkZFPReader::CheckLayout(const Layout& layout)
     return message.str();
   }
   const vtkTypeInt64 streamBytes = vtkCompressedVolume::StreamBytesFor(dims, layout.BlockBits);
-  const vtkTypeInt64 needed = (layout.HeaderBits + layout.PayloadBits() + 7) / 8;
+  const vtkTypeInt64 needed =
+    streamBytes < 0 ? 0 : (layout.HeaderBits + layout.PayloadBits() + 7) / 8;
   // without header the size is all that shows a wrong dimension or rate
   const bool tooLong = layout.HeaderBits == 0 && layout.FileBytes > streamBytes;
   if (streamBytes < 0 || layout.FileBytes < needed || tooLong)
@@ -289,7 +292,11 @@ std::string vtkZFPReader::Load(const Layout& layout, vtkImageData* output)
   const vtkTypeInt64 bytes =
     vtkCompressedVolume::StreamBytesFor(layout.Dimensions, layout.BlockBits);
   vtkNew<vtkUnsignedCharArray> stream;
-  stream->SetNumberOfValues(bytes);
+  if (!vtkZFPMemory::Allocate(stream.Get(), bytes))
+  {
+    return "cannot be read: there is " +
+      vtkZFPMemory::Objection("the stream", layout.Dimensions, bytes);
+  }
   auto* const words = reinterpret_cast<vtkTypeUInt64*>(stream->GetPointer(0));
   if (!ReadWords(layout.FileName, layout.FileBytes, layout.HeaderBits, words, bytes / 8))
   {

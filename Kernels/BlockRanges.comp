@@ -141,14 +141,15 @@ uint Quantize(vec2 range, vec2 coarse)
   uint high = 255u;
   if (unit > 0.0)
   {
-    low = uint(clamp((range.x / unit - coarse.x / unit), 0.0, 255.0));
+    low = min(uint(clamp((range.x / unit - coarse.x / unit), 0.0, 255.0)), 255u);
     high = min(uint(clamp(ceil(range.y / unit - coarse.x / unit), 0.0, 255.0)), 255u);
   }
-  while (low > 0u && RangeLow(coarse, low) > range.x)
+  // also where a damaged stream has infinite values, of which steps are not numbers
+  while (low > 0u && !(RangeLow(coarse, low) <= range.x))
   {
     --low;
   }
-  while (high < 255u && RangeHigh(coarse, high) < range.y)
+  while (high < 255u && !(RangeHigh(coarse, high) >= range.y))
   {
     ++high;
   }

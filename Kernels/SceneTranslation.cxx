@@ -334,9 +334,14 @@ SceneBlock TranslateScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMap
   SamplesToWorld(volume, image, compressed, indexToWorld);
   vtkMatrix4x4::Invert(indexToWorld, worldToIndex);
   vtkMatrix4x4::Multiply4x4(worldToEye, indexToWorld, eyeToIndex);
+  const double determinant = eyeToIndex->Determinant();
   eyeToIndex->Invert();
 
   TranslateRays(MakeEyeRays(projection, scene.Image[0], scene.Image[1]), eyeToIndex, scene);
+  if (!(determinant != 0.0)) // nothing was inverted
+  {
+    std::fill_n(scene.RayDirection[0], 3, std::numeric_limits<double>::quiet_NaN());
+  }
   camera->GetClippingRange(scene.RayRange);
   TranslatePart(image, compressed, scene);
   TranslateIsovalues(volume->GetProperty(), compressed, scene);
@@ -350,6 +355,16 @@ SceneBlock TranslateScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMap
   scene.DepthTerms[3] = static_cast<float>(-projection->GetElement(3, 2));
   TranslateLook(renderer, volume->GetProperty(), worldToEye, scene);
   return scene;
+}
+
+bool HasRays(const SceneBlock& scene)
+{
+  const double most = 1e200; // their sums are finite, too
+  const auto isSmall = [=](double value) { return std::abs(value) <= most; };
+  const double* const origin = scene.RayOrigin[0];
+  const double* const direction = scene.RayDirection[0];
+  return std::all_of(origin, origin + 12, isSmall) &&
+    std::all_of(direction, direction + 12, isSmall);
 }
 
 bool SameHits(const SceneBlock& a, const SceneBlock& b)

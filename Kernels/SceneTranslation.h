@@ -21,6 +21,10 @@ class vtkVolumeMapper;
 SceneBlock TranslateScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMapper* mapper,
   vtkImageData* image, vtkCompressedVolume* compressed, const int viewport[4]);
 
+/// Are the rays numbers? They are not where the image's geometry, the prop's matrix or the camera
+/// is not, or cannot be inverted, and no walk along them would end.
+bool HasRays(const SceneBlock& scene);
+
 /// Do two scenes have the same hits? Cameras are compared with a relative tolerance of 1e-7:
 /// vtkWindowToImageFilter perturbs the view angle by rounding.
 bool SameHits(const SceneBlock& a, const SceneBlock& b);

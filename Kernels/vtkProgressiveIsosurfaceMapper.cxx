@@ -574,6 +574,11 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(
   const int viewport[4] = { place[2], place[3], place[0], place[1] };
   SceneBlock scene = TranslateScene(
     renderer, volume, this->Owner, this->Values.Image, this->Values.Volume, viewport);
+  if (!HasRays(scene))
+  {
+    return this->Report("cannot show its input: the image's spacing, origin and directions, the "
+                        "volume's matrix and the camera must be finite, and none of them flat");
+  }
   const bool likeMeshes = this->Owner->LitLikeMeshes && scene.Lighting[3] != 0;
   scene.Lighting[3] = likeMeshes ? SceneBlock::LitLikeMeshes : scene.Lighting[3];
   vtkCamera* camera = renderer->GetActiveCamera();

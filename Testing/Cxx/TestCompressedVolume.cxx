@@ -110,18 +110,50 @@ void TestRejects()
 
 //------------------------------------------------------------------------------
 // Dimensions that agree with an extent, yet cannot be: nothing may overflow.
-void TestHugeExtent()
+void ExpectRefusedExtent(int low, int high, const std::string& words)
 {
-  const int most = std::numeric_limits<int>::max();
   const auto image = Compress(FloatImage(Size));
-  const auto dims = Values<vtkTypeInt64Array>({ most, most, most });
+  const vtkTypeInt64 count = static_cast<vtkTypeInt64>(high) - low + 1;
+  const auto dims = Values<vtkTypeInt64Array>({ count, count, count });
   dims->SetName("ProgIso.ZFP.Dimensions");
-  image->SetExtent(0, most - 1, 0, most - 1, 0, most - 1);
+  image->SetExtent(low, high, low, high, low, high);
   image->GetFieldData()->AddArray(dims);
   vtkNew<vtkCompressedVolume> volume;
-  EXPECT(!volume->Read(image), "huge");
-  EXPECT(
-    volume->GetErrorMessage().find("truncated") != std::string::npos, volume->GetErrorMessage());
+  EXPECT(!volume->Read(image), low << " to " << high);
+  EXPECT(volume->GetErrorMessage().find(words) != std::string::npos, volume->GetErrorMessage());
+}
+
+// A stream's extent that has 2 points where 64-bit integers wrap.
+void ExpectRefusedWrapping()
+{
+  const auto image = Compress(FloatImage(Size));
+  const auto dims = Values<vtkTypeInt64Array>({ 2, 2, 2 });
+  vtkNew<vtkTypeInt64Array> extent;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    extent->InsertNextValue(std::numeric_limits<vtkTypeInt64>::max());
+    extent->InsertNextValue(std::numeric_limits<vtkTypeInt64>::min());
+  }
+  dims->SetName("ProgIso.ZFP.Dimensions");
+  extent->SetName("ProgIso.ZFP.Extent");
+  image->SetExtent(0, 0, 0, 0, 0, 0);
+  image->GetFieldData()->AddArray(dims);
+  image->GetFieldData()->AddArray(extent);
+  vtkNew<vtkCompressedVolume> volume;
+  EXPECT(!volume->Read(image), "wrapping");
+  EXPECT(volume->GetErrorMessage().find("axis 0") != std::string::npos, volume->GetErrorMessage());
+}
+
+void TestHugeExtent()
+{
+  const int most = std::numeric_limits<int>::max(), limit = 1 << 30;
+  ExpectRefusedExtent(0, limit, "truncated");
+  ExpectRefusedExtent(-limit, limit - 2, "truncated");
+  ExpectRefusedExtent(0, most - 1, "beyond");
+  ExpectRefusedExtent(most - 8, most, "beyond");
+  ExpectRefusedExtent(-most - 1, -most + 8, "beyond");
+  ExpectRefusedExtent(-most - 1, most, "2^31-1");
+  ExpectRefusedWrapping();
 }
 
 //------------------------------------------------------------------------------

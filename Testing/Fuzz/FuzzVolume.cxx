@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// vtkCompressedVolume::Read() on field data in any state, and all that works on what it accepts:
+// decompressing, contouring, cutting out, storing again.
+#include "HostileImage.h"
+
+#include <vtkFlyingEdges3D.h>
+#include <vtkImageZFPDecompress.h>
+#include <vtkPolyData.h>
+#include <vtkZFPContour.h>
+
+namespace
+{
+using namespace fuzz;
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkImageData> Decompress(vtkImageData* image)
+{
+  vtkNew<vtkImageZFPDecompress> decompress;
+  decompress->SetInputData(image);
+  return Update(decompress) ? decompress->GetOutput() : nullptr;
+}
+
+//------------------------------------------------------------------------------
+vtkDataArray* SamplesOf(vtkImageData* image)
+{
+  vtkDataArray* samples = image->GetPointData()->GetScalars();
+  return samples ? samples : image->GetCellData()->GetScalars();
+}
+
+//------------------------------------------------------------------------------
+// The extent of the samples: for cell data that of the cells.
+void SampleExtent(vtkCompressedVolume* volume, int extent[6])
+{
+  volume->GetExtent(extent);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    extent[2 * axis + 1] -= volume->GetAssociation() == vtkCompressedVolume::CellData ? 1 : 0;
+  }
+}
+
+//------------------------------------------------------------------------------
+// The whole stream's samples: those of an image of the stream's extent.
+vtkSmartPointer<vtkImageData> DecompressWhole(vtkCompressedVolume* volume)
+{
+  vtkNew<vtkImageData> image;
+  image->SetExtent(volume->GetExtent());
+  volume->Write(image);
+  vtkNew<vtkCompressedVolume> again;
+  CHECK(again->Read(image), again->GetErrorMessage());
+  const auto whole = Decompress(image);
+  CHECK(whole, "not decompressed");
+  return whole;
+}
+
+//------------------------------------------------------------------------------
+// A cut-out volume decodes to what the whole has there, bit for bit.
+void CheckCrop(vtkCompressedVolume* volume, vtkImageData* whole, Bytes& bytes)
+{
+  int own[6], from[6], to[6];
+  volume->GetExtent(own);
+  SampleExtent(volume, from);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    int* const bounds = own + 2 * axis;
+    const int cells = bounds[1] - bounds[0];
+    bounds[0] += bytes.Below(cells);
+    bounds[1] -= bytes.Below(bounds[1] - bounds[0]);
+  }
+  volume->Crop(own);
+  SampleExtent(volume, to);
+  const auto part = DecompressWhole(volume);
+  auto* const all = vtkArrayDownCast<vtkFloatArray>(SamplesOf(whole));
+  auto* const cut = vtkArrayDownCast<vtkFloatArray>(SamplesOf(part));
+  vtkIdType next = 0;
+  for (int z = to[4]; z <= to[5]; ++z)
+  {
+    for (int y = to[2]; y <= to[3]; ++y)
+    {
+      const vtkIdType row = from[1] - from[0] + 1, rows = from[3] - from[2] + 1;
+      const vtkIdType first = to[0] - from[0] + row * (y - from[2] + rows * (z - from[4]));
+      const vtkIdType count = to[1] - to[0] + 1;
+      CHECK(std::memcmp(cut->GetPointer(next), all->GetPointer(first), 4 * count) == 0,
+        "row " << y << " of slice " << z);
+      next += count;
+    }
+  }
+  CHECK(next == cut->GetNumberOfValues(), next);
+}
+
+//------------------------------------------------------------------------------
+void CheckContour(
+  vtkImageData* image, vtkCompressedVolume* volume, vtkImageData* whole, Bytes& bytes)
+{
+  vtkNew<vtkZFPContour> contour;
+  contour->SetInputData(image);
+  contour->SetBrickSize(bytes.Below(40));
+  contour->SetComputeGradients(bytes.Flag());
+  contour->SetComputeNormals(bytes.Flag());
+  contour->SetNumberOfThreads(1);
+  const int values = bytes.Below(3);
+  for (int i = 0; i < values; ++i)
+  {
+    contour->SetValue(i, bytes.Number());
+  }
+  // the values of some samples, too, which rarely lie in between others
+  auto* const samples = SamplesOf(whole);
+  for (int i = 0; i < 1; ++i)
+  {
+    const vtkIdType at = bytes.Take<std::uint16_t>() % samples->GetNumberOfTuples();
+    contour->SetValue(values + i, samples->GetComponent(at, 0));
+  }
+  if (!Update(contour) || values > 0 ||
+    volume->GetAssociation() != vtkCompressedVolume::PointData || !volume->Covers(image) ||
+    volume->HidesAny())
+  {
+    return;
+  }
+  vtkNew<vtkFlyingEdges3D> edges;
+  edges->SetInputData(whole);
+  edges->SetValue(0, contour->GetValue(0));
+  edges->ComputeNormalsOff();
+  edges->Update();
+  CHECK(contour->GetOutput()->GetNumberOfPolys() == edges->GetOutput()->GetNumberOfPolys() &&
+      contour->GetOutput()->GetNumberOfPoints() == edges->GetOutput()->GetNumberOfPoints(),
+    contour->GetOutput()->GetNumberOfPoints()
+      << " points, not " << edges->GetOutput()->GetNumberOfPoints());
+}
+}
+
+//------------------------------------------------------------------------------
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+  Bytes bytes(data, size);
+  const vtkSmartPointer<vtkImageData> image = HostileImage(bytes);
+  int own[6];
+  vtkCompressedVolume::GetOwnExtent(image, own);
+  vtkNew<vtkCompressedVolume> volume;
+  const bool accepted = volume->Read(image);
+  CHECK(accepted == volume->GetErrorMessage().empty(), volume->GetErrorMessage());
+  CHECK(accepted == (volume->GetStream() != nullptr), "stream");
+  const auto decompressed = Decompress(image);
+  CHECK(accepted == (decompressed != nullptr), volume->GetErrorMessage());
+  if (!accepted)
+  {
+    vtkNew<vtkZFPContour> contour;
+    contour->SetInputData(image);
+    CHECK(!Update(contour), "contoured");
+    return 0;
+  }
+  const auto whole = DecompressWhole(volume);
+  CheckContour(image, volume, whole, bytes);
+  CheckCrop(volume, whole, bytes);
+  return 0;
+}
