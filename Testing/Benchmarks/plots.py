@@ -248,6 +248,24 @@ def _error_over_time(record):
     return figure
 
 
+def _draw_rates(records):
+    figure, (upper, lower) = _figure(8, 7, nrows=2, sharex=True)
+    for record, (color, marker) in zip(records, _CYCLE):
+        points = [point for point in record.get("points", []) if point["p99"]]
+        name = record["field"].rsplit("-r", 1)[0]
+        for axes, key, scale in ((upper, "p99", 1), (lower, "wrong", 100)):
+            shown = [(point["rate"], scale * point[key]) for point in points if point[key]]
+            axes.plot(*np.array(shown).reshape(-1, 2).T, color=color, marker=marker, label=name)
+    for axes in (upper, lower):
+        axes.set_yscale("log")
+        _log(axes.yaxis)
+    upper.set_ylabel("99 % of depths are off\nby less than so many voxels")
+    lower.set_ylabel("rays with wrong\nhit or miss in %")
+    lower.set_xlabel("bits per sample")
+    upper.legend()
+    return {"rates": figure}
+
+
 def _line(points):
     """The points of a series that one setting tells apart, and those that stand alone."""
     line = [point for point in points if point["label"] != DEFAULT_DISTANCE]
@@ -337,6 +355,7 @@ _DRAW = {
     "peers": _draw_peers,
     "protocol": _draw_protocol,
     "errors": _draw_errors,
+    "rates": _draw_rates,
     "image_scaling": _draw_image_scaling,
     "volume_scaling": _draw_volume_scaling,
     "budget": _draw_budget,

@@ -11,6 +11,7 @@ from .fields import parse_field
 from .latency import measure_latency
 from .peers import measure_peers
 from .protocol import measure_protocol
+from .rates import measure_rates
 from .scaling import measure_image_scaling, measure_volume_scaling
 from .settings import PEERS
 
@@ -50,6 +51,7 @@ SETS = {
         "beside VTK's isosurface mapper and FlyingEdges", (*SCANS, *SMALL, *LARGE), PEERS, 10
     ),
     "errors": Defaults("depth error against run time", (*SCANS, *SMALL), PEERS, 10),
+    "rates": Defaults("errors and topology over the bits per sample", (*SCANS, *SMALL), PEERS, 10),
     "budget": Defaults("time and memory within memory budgets", (LARGE[0],), PEERS, 10),
 }
 
@@ -117,5 +119,6 @@ _STEPS = {
     "scaling": _scaling,
     "peers": partial(_each, "peers", measure_peers),
     "errors": partial(_each, "errors", measure_errors),
+    "rates": partial(_each, "rates", measure_rates),
     "budget": partial(_each, "budget", measure_budget),
 }
