@@ -13,6 +13,7 @@ from .peers import measure_peers
 from .protocol import measure_protocol
 from .scaling import measure_image_scaling, measure_volume_scaling
 from .settings import PEERS
+from .soak import measure_soak
 
 SCANS = ("ct-cranium-r8", "mri-brain-r8")
 SMALL = ("marschner-lobb-128-k6-r4", "gyroid-256-k6-r2")
@@ -51,6 +52,7 @@ SETS = {
     ),
     "errors": Defaults("depth error against run time", (*SCANS, *SMALL), PEERS, 10),
     "budget": Defaults("time and memory within memory budgets", (LARGE[0],), PEERS, 10),
+    "soak": Defaults("memory over thousands of random changes", ("gyroid-64-k3-r8",), PEERS, 2),
 }
 
 #: What `quick` leaves out of the longer series.
@@ -118,4 +120,5 @@ _STEPS = {
     "peers": partial(_each, "peers", measure_peers),
     "errors": partial(_each, "errors", measure_errors),
     "budget": partial(_each, "budget", measure_budget),
+    "soak": partial(_each, "soak", measure_soak),
 }
