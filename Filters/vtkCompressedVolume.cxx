@@ -14,6 +14,7 @@
 #include "vtkStringArray.h"
 #include "vtkStructuredData.h"
 #include "vtkTypeInt64Array.h"
+#include "vtkTypeUInt64Array.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVariant.h"
 
@@ -37,9 +38,12 @@ const char* const ArrayNameName = "ProgIso.ZFP.ArrayName";
 const char* const ComponentName = "ProgIso.ZFP.Component";
 const char* const AssociationName = "ProgIso.ZFP.Association";
 const char* const ExtentName = "ProgIso.ZFP.Extent";
+const char* const HiddenSamplesName = "ProgIso.ZFP.HiddenSamples";
+const char* const HiddenCellsName = "ProgIso.ZFP.HiddenCells";
 
 const char* const AllNames[] = { VersionName, StreamName, BlockBitsName, DimensionsName, RangeName,
-  ScalarTypeName, ArrayNameName, ComponentName, AssociationName, ExtentName };
+  ScalarTypeName, ArrayNameName, ComponentName, AssociationName, ExtentName, HiddenSamplesName,
+  HiddenCellsName };
 
 //------------------------------------------------------------------------------
 // Values of a field data array; an error sentence when it is not `count` integers (or numbers).
@@ -233,6 +237,7 @@ void vtkCompressedVolume::Clear()
   this->ArrayName.clear();
   this->Component = 0;
   this->Association = PointData;
+  this->HiddenSamples = this->HiddenCells = vtkBlockMask();
   this->Stream = nullptr;
   this->Modified();
 }
@@ -263,7 +268,11 @@ std::string vtkCompressedVolume::Check(vtkImageData* image)
   {
     error = this->CheckGeometry(image);
   }
-  return error.empty() ? this->ReadStreamAndName(image) : error;
+  if (error.empty())
+  {
+    error = this->ReadStreamAndName(image);
+  }
+  return error.empty() ? this->ReadHidden(image) : error;
 }
 
 //------------------------------------------------------------------------------
@@ -273,10 +282,11 @@ std::string vtkCompressedVolume::ReadNumbers(vtkImageData* image)
   const int most = std::numeric_limits<int>::max();
   int version = 0;
   std::string error = GetInteger(fields, VersionName, 1, most, version);
-  if (error.empty() && version != FormatVersion)
+  if (error.empty() && version > FormatVersion)
   {
     return "it has version " + std::to_string(version) +
-      " of the format, this ProgIso reads version 1 (a newer ProgIso wrote it)";
+      " of the format, this ProgIso reads version " + std::to_string(FormatVersion) +
+      " and older (a newer ProgIso wrote it)";
   }
   const auto get = [&](const char* name, int low, int high, int& value)
   {
@@ -411,11 +421,30 @@ std::string vtkCompressedVolume::ReadStreamAndName(vtkImageData* image)
 }
 
 //------------------------------------------------------------------------------
+std::string vtkCompressedVolume::ReadHidden(vtkImageData* image)
+{
+  const auto read = [&](const char* name, vtkBlockMask& mask)
+  {
+    vtkAbstractArray* array = image->GetFieldData()->GetAbstractArray(name);
+    if (!array)
+    {
+      return std::string();
+    }
+    vtkDataArray* numbers = vtkArrayDownCast<vtkDataArray>(array);
+    const std::string error = numbers ? mask.FromArray(numbers, NumberOfBlocksFor(this->Dimensions))
+                                      : std::string("does not hold numbers");
+    return error.empty() ? error : std::string("its field data array ") + name + " " + error;
+  };
+  const std::string error = read(HiddenSamplesName, this->HiddenSamples);
+  return error.empty() ? read(HiddenCellsName, this->HiddenCells) : error;
+}
+
+//------------------------------------------------------------------------------
 void vtkCompressedVolume::Write(vtkImageData* image) const
 {
   Remove(image);
   vtkFieldData* fields = image->GetFieldData();
-  const int version = FormatVersion;
+  const int version = this->HidesAny() ? FormatVersion : 1;
   StoreNumbers<vtkIntArray>(fields, VersionName, &version, 1);
   StoreNumbers<vtkIntArray>(fields, BlockBitsName, &this->BlockBits, 1);
   StoreNumbers<vtkTypeInt64Array>(fields, DimensionsName, this->Dimensions, 3);
@@ -426,6 +455,17 @@ void vtkCompressedVolume::Write(vtkImageData* image) const
   StoreNumbers<vtkIntArray>(
     fields, ExtentName, this->Extent[0] > this->Extent[1] ? image->GetExtent() : this->Extent, 6);
   StoreNumbers<vtkStringArray>(fields, ArrayNameName, &this->ArrayName, 1);
+  const auto store = [fields](const char* name, const vtkBlockMask& mask)
+  {
+    if (!mask.IsEmpty())
+    {
+      const auto array = mask.ToArray();
+      array->SetName(name);
+      fields->AddArray(array);
+    }
+  };
+  store(HiddenSamplesName, this->HiddenSamples);
+  store(HiddenCellsName, this->HiddenCells);
   this->Stream->SetName(StreamName);
   fields->AddArray(this->Stream);
 }
@@ -521,6 +561,10 @@ void vtkCompressedVolume::Crop(const int own[6])
   vtkNew<vtkUnsignedCharArray> stream;
   stream->SetNumberOfValues(StreamBytesFor(dims, this->BlockBits));
   this->CopyBlocks(first, count, stream);
+  int blocks[3];
+  this->GetBlocks(blocks);
+  this->HiddenSamples = this->HiddenSamples.Crop(first, count, blocks);
+  this->HiddenCells = this->HiddenCells.Crop(first, count, blocks);
   this->SetStream(stream);
   this->SetDimensions(dims);
   this->SetExtent(kept);
@@ -572,6 +616,34 @@ void vtkCompressedVolume::SetArrayName(const std::string& name)
 }
 
 //------------------------------------------------------------------------------
+void vtkCompressedVolume::SetHiddenSamples(const vtkBlockMask& mask)
+{
+  if (!(this->HiddenSamples == mask))
+  {
+    this->HiddenSamples = mask;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkCompressedVolume::SetHiddenCells(const vtkBlockMask& mask)
+{
+  if (!(this->HiddenCells == mask))
+  {
+    this->HiddenCells = mask;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+vtkBlockMask vtkCompressedVolume::GetCellsWithoutSurface() const
+{
+  int blocks[3];
+  this->GetBlocks(blocks);
+  return this->HiddenSamples.ToCells(blocks, this->HiddenCells);
+}
+
+//------------------------------------------------------------------------------
 vtkUnsignedCharArray* vtkCompressedVolume::GetStream() const
 {
   return this->Stream;
@@ -606,6 +678,8 @@ void vtkCompressedVolume::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Component: " << this->Component << "\n";
   os << indent << "Association: " << (this->Association == CellData ? "cell" : "point")
      << " data\n";
+  os << indent << "HiddenSamples: " << this->HiddenSamples.GetRuns().size() << " runs\n";
+  os << indent << "HiddenCells: " << this->HiddenCells.GetRuns().size() << " runs\n";
   os << indent << "Stream: ";
   this->Stream ? os << this->Stream->GetNumberOfValues() << " bytes\n" : os << "(none)\n";
   os << indent << "ErrorMessage: " << this->ErrorMessage << "\n";

@@ -6,9 +6,9 @@
  *
  * A compressed volume is a vtkImageData with the geometry of the original (extent, spacing, origin,
  * direction matrix), without the compressed array, and with these arrays in its field data
- * (version 1 of the format):
+ * (version 1 of the format; version 2 where something is hidden):
  *
- * - ProgIso.ZFP.Version (int): 1
+ * - ProgIso.ZFP.Version (int): 1 or 2
  * - ProgIso.ZFP.Stream (unsigned char): fixed-rate zfp stream, see below
  * - ProgIso.ZFP.BlockBits (int): bits per block of 4x4x4 samples, 9..2048
  * - ProgIso.ZFP.Dimensions (3 64-bit integers): samples per axis (points, or cells for cell data)
@@ -18,6 +18,11 @@
  * - ProgIso.ZFP.Component (int): component of the original array
  * - ProgIso.ZFP.Association (int): 0 point data, 1 cell data
  * - ProgIso.ZFP.Extent (6 integers, optional): the image extent that the stream covers
+ * - ProgIso.ZFP.HiddenSamples, ProgIso.ZFP.HiddenCells (pairs of unsigned 64-bit integers,
+ *   optional): what is hidden, as runs of blocks, see vtkBlockMask: first block, bits
+ *
+ * Hidden samples have no values: what the stream has in their place is of no account. There is no
+ * isosurface in a cell of the interpolant that has a hidden corner, or that is itself hidden.
  *
  * The stream covers the image, or more than it: a piece of an image that several processes share,
  * or a subset cut out of one, takes the stream of a larger extent with it. What lies beyond the
@@ -41,6 +46,7 @@
 #ifndef vtkCompressedVolume_h
 #define vtkCompressedVolume_h
 
+#include "vtkBlockMask.h"
 #include "vtkObject.h"
 #include "vtkProgIsoFiltersModule.h" // for export macro
 #include "vtkSmartPointer.h"         // for the stream
@@ -61,7 +67,7 @@ public:
 
   enum
   {
-    FormatVersion = 1,
+    FormatVersion = 2,       ///< newest that is read; written where something is hidden, else 1
     MinimumBlockBits = 9,    ///< sign-less float block: 1 bit "not empty" + 8 bits exponent
     MaximumBlockBits = 2048, ///< 32 bits per sample
   };
@@ -188,8 +194,8 @@ public:
 
   ///@{
   /**
-   * Smallest and largest sample of the original array, as float32. Decoded samples may lie a little
-   * outside (lossy compression).
+   * Smallest and largest visible sample of the original array, as float32; zeros where all are
+   * hidden. Decoded samples may lie a little outside (lossy compression).
    */
   vtkGetVector2Macro(Range, double);
   vtkSetVector2Macro(Range, double);
@@ -217,6 +223,19 @@ public:
   ///@}
 
   ///@{
+  ///@{
+  /**
+   * Samples that are hidden, and, of point data, cells of the image; and what follows for the cells
+   * between samples: hidden, or with a hidden corner.
+   */
+  const vtkBlockMask& GetHiddenSamples() const { return this->HiddenSamples; }
+  void SetHiddenSamples(const vtkBlockMask& mask);
+  const vtkBlockMask& GetHiddenCells() const { return this->HiddenCells; }
+  void SetHiddenCells(const vtkBlockMask& mask);
+  vtkBlockMask GetCellsWithoutSurface() const;
+  bool HidesAny() const { return !this->HiddenSamples.IsEmpty() || !this->HiddenCells.IsEmpty(); }
+  ///@}
+
   /**
    * The stream; null before a successful Read(). At least StreamBytesFor() bytes.
    */
@@ -236,6 +255,7 @@ private:
   std::string Check(vtkImageData* image);
   std::string ReadNumbers(vtkImageData* image);
   std::string ReadStreamAndName(vtkImageData* image);
+  std::string ReadHidden(vtkImageData* image);
   std::string CheckGeometry(vtkImageData* image);
   void FindExtent(vtkImageData* image, const vtkTypeInt64 dims[3]);
   void CopyBlocks(const int first[3], const int count[3], vtkUnsignedCharArray* target) const;
@@ -248,6 +268,8 @@ private:
   std::string ArrayName;
   int Component = 0;
   int Association = PointData;
+  vtkBlockMask HiddenSamples;
+  vtkBlockMask HiddenCells;
   vtkSmartPointer<vtkUnsignedCharArray> Stream;
   std::string ErrorMessage;
 };

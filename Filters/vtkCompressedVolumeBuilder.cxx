@@ -35,6 +35,7 @@ struct vtkCompressedVolumeBuilder::Work
   int Dimensions[3];
   int BlockBits;
   vtkNew<vtkUnsignedCharArray> Stream;
+  vtkZFPBlocks::Hidden Hidden;
   vtkZFPBlocks::Summary Summary;
   int Slices = 0; // done
   int ScalarType = VTK_VOID;
@@ -152,8 +153,9 @@ bool vtkCompressedVolumeBuilder::AddSlab(vtkDataArray* samples, int component)
   vtkZFPBlocks blocks(
     volume.Dimensions, volume.BlockBits, volume.Stream->GetPointer(0), this->NumberOfThreads);
   const int first = volume.Slices / 4;
-  blocks.Encode(samples, component, first, (volume.Slices + slices + 3) / 4, volume.Summary,
-    [](double) { return true; });
+  volume.Hidden.NotFinite = this->MaskNonFinite;
+  blocks.Encode(samples, component, first, (volume.Slices + slices + 3) / 4, volume.Hidden,
+    volume.Summary, [](double) { return true; });
   if (!volume.Summary.IsFinite())
   {
     std::ostringstream message;
@@ -192,7 +194,8 @@ bool vtkCompressedVolumeBuilder::Finish(vtkImageData* image)
   vtkNew<vtkCompressedVolume> volume;
   volume->SetBlockBits(work->BlockBits);
   volume->SetDimensions(work->Dimensions);
-  volume->SetRange(work->Summary.Minimum, work->Summary.Maximum);
+  volume->SetRange(work->Summary.GetRange().data());
+  volume->SetHiddenSamples(work->Hidden.Mask);
   volume->SetScalarType(work->ScalarType);
   volume->SetArrayName(name.empty() ? "scalars" : name);
   volume->SetComponent(work->Component);
@@ -207,6 +210,7 @@ void vtkCompressedVolumeBuilder::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "ArrayName: " << this->ArrayName << "\n";
+  os << indent << "MaskNonFinite: " << (this->MaskNonFinite ? "on\n" : "off\n");
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "NumberOfSlices: " << this->GetNumberOfSlices() << "\n";
   os << indent << "ErrorMessage: " << this->ErrorMessage << "\n";

@@ -49,6 +49,16 @@ public:
 
   ///@{
   /**
+   * Whether NaN and infinite samples (as float32) are hidden, as vtkImageZFPCompress has it.
+   * Default off: they are refused. Not to be changed between slabs.
+   */
+  vtkSetMacro(MaskNonFinite, bool);
+  vtkGetMacro(MaskNonFinite, bool);
+  vtkBooleanMacro(MaskNonFinite, bool);
+  ///@}
+
+  ///@{
+  /**
    * Threads used to encode; 0, the default, takes all that OpenMP offers (OMP_NUM_THREADS).
    */
   vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
@@ -64,7 +74,7 @@ public:
   /**
    * Compress the next slices: one component of an array of a multiple of dims[0]*dims[1] tuples, x
    * fastest. Of all slabs but the last that multiple must be a multiple of 4, and all must be of
-   * one type. NaN and infinite samples (as float32) are refused.
+   * one type. See MaskNonFinite for NaN.
    */
   bool AddSlab(vtkDataArray* samples, int component = 0);
 
@@ -99,6 +109,7 @@ private:
   std::string CheckSlab(vtkDataArray* samples, int component) const;
 
   std::string ArrayName;
+  bool MaskNonFinite = false;
   int NumberOfThreads = 0;
   std::string ErrorMessage;
   std::unique_ptr<Work> Volume; // what is being built; null before Start(), and after a refusal

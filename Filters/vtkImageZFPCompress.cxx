@@ -100,6 +100,85 @@ vtkSmartPointer<vtkDataArray> CutOut(vtkDataArray* array, const int extent[6], c
 }
 
 //------------------------------------------------------------------------------
+// Flags that hide, as vtkImageData::IsPointVisible() and IsCellVisible() see them.
+constexpr unsigned char HidingPoint = vtkDataSetAttributes::HIDDENPOINT;
+constexpr unsigned char HidingCell =
+  vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::REFINEDCELL;
+
+//------------------------------------------------------------------------------
+// An image's ghost array, or null where no tuple has such a flag.
+vtkUnsignedCharArray* FindHiding(vtkUnsignedCharArray* ghosts, unsigned char hiding)
+{
+  if (!ghosts)
+  {
+    return nullptr;
+  }
+  const unsigned char* begin = ghosts->GetPointer(0);
+  const unsigned char* end = begin + ghosts->GetNumberOfValues();
+  const bool found =
+    std::any_of(begin, end, [=](unsigned char flags) { return (flags & hiding) != 0; });
+  return found ? ghosts : nullptr;
+}
+
+//------------------------------------------------------------------------------
+// Flags for the cells of an image: what their own say, or hidden for that of a corner.
+vtkSmartPointer<vtkUnsignedCharArray> HideCells(
+  vtkUnsignedCharArray* points, vtkUnsignedCharArray* cells, const int extent[6])
+{
+  if (!points)
+  {
+    return cells;
+  }
+  const vtkIdType dims[3] = { extent[1] - extent[0], extent[3] - extent[2], extent[5] - extent[4] };
+  auto hidden = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  hidden->SetNumberOfValues(dims[0] * dims[1] * dims[2]);
+  const vtkIdType row = dims[0] + 1, slice = row * (dims[1] + 1);
+  for (vtkIdType i = 0; i < hidden->GetNumberOfValues(); ++i)
+  {
+    const vtkIdType first =
+      i % dims[0] + row * (i / dims[0] % dims[1]) + slice * (i / dims[0] / dims[1]);
+    unsigned char flags = 0;
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      flags |=
+        points->GetValue(first + (corner & 1) + row * (corner >> 1 & 1) + slice * (corner >> 2));
+    }
+    const bool hides = (flags & HidingPoint) || (cells && (cells->GetValue(i) & HidingCell));
+    hidden->SetValue(i, hides ? vtkDataSetAttributes::HIDDENCELL : 0);
+  }
+  return hidden;
+}
+
+//------------------------------------------------------------------------------
+// The mask of cells between samples, `size` of them per axis.
+vtkBlockMask MaskCells(vtkUnsignedCharArray* flags, const int size[3])
+{
+  vtkBlockMask mask;
+  const vtkIdType row = size[0] - 1, slice = row * (size[1] - 1);
+  for (int z = 0; z < size[2]; z += 4)
+  {
+    for (int y = 0; y < size[1]; y += 4)
+    {
+      for (int x = 0; x < size[0]; x += 4)
+      {
+        vtkTypeUInt64 bits = 0;
+        for (int i = 0; i < 64; ++i)
+        {
+          const int at[3] = { x + i % 4, y + i / 4 % 4, z + i / 16 };
+          const bool exists = at[0] + 1 < size[0] && at[1] + 1 < size[1] && at[2] + 1 < size[2];
+          if (exists && (flags->GetValue(at[0] + row * at[1] + slice * at[2]) & HidingCell))
+          {
+            bits |= vtkTypeUInt64(1) << i;
+          }
+        }
+        mask.Append(bits);
+      }
+    }
+  }
+  return mask;
+}
+
+//------------------------------------------------------------------------------
 // By identity: point and cell arrays may have the same name.
 bool Contains(vtkDataSetAttributes* attributes, vtkDataArray* array)
 {
@@ -162,10 +241,13 @@ struct vtkImageZFPCompress::Part
   int Input[6];   // of the input, with ghost cells
   int Own[6];     // without
   int Covered[6]; // by the stream
-  int Samples[3]; // in the stream, per axis
+  int Size[3];    // samples in the stream, per axis
 
   void Find(vtkImageData* input, vtkInformation* information);
   void ToSamples(const int extent[6], int samples[6]) const;
+  vtkSmartPointer<vtkDataArray> Samples(vtkDataArray* array) const;
+  vtkSmartPointer<vtkUnsignedCharArray> HiddenSamples(vtkImageData* input) const;
+  vtkBlockMask HiddenCells(vtkImageData* input) const;
 };
 
 //------------------------------------------------------------------------------
@@ -186,7 +268,7 @@ void vtkImageZFPCompress::Part::Find(vtkImageData* input, vtkInformation* inform
     int* covered = this->Covered + 2 * axis;
     covered[0] = std::max(covered[0], this->Input[2 * axis]);
     covered[1] = std::min(covered[1], this->Input[2 * axis + 1]);
-    this->Samples[axis] = covered[1] - covered[0] + 1 - cells;
+    this->Size[axis] = covered[1] - covered[0] + 1 - cells;
   }
 }
 
@@ -201,6 +283,47 @@ void vtkImageZFPCompress::Part::ToSamples(const int extent[6], int samples[6]) c
 }
 
 //------------------------------------------------------------------------------
+// Those of an array that are compressed.
+vtkSmartPointer<vtkDataArray> vtkImageZFPCompress::Part::Samples(vtkDataArray* array) const
+{
+  int given[6], covered[6];
+  this->ToSamples(this->Input, given);
+  this->ToSamples(this->Covered, covered);
+  return CutOut(array, given, covered);
+}
+
+//------------------------------------------------------------------------------
+// Flags of the samples that are compressed; null where none is hidden.
+vtkSmartPointer<vtkUnsignedCharArray> vtkImageZFPCompress::Part::HiddenSamples(
+  vtkImageData* input) const
+{
+  vtkSmartPointer<vtkUnsignedCharArray> flags =
+    FindHiding(input->GetPointGhostArray(), HidingPoint);
+  if (this->Association == vtkCompressedVolume::CellData)
+  {
+    flags = HideCells(flags, FindHiding(input->GetCellGhostArray(), HidingCell), this->Input);
+  }
+  return flags ? vtkUnsignedCharArray::SafeDownCast(this->Samples(flags)) : nullptr;
+}
+
+//------------------------------------------------------------------------------
+vtkBlockMask vtkImageZFPCompress::Part::HiddenCells(vtkImageData* input) const
+{
+  vtkUnsignedCharArray* flags = FindHiding(input->GetCellGhostArray(), HidingCell);
+  if (!flags || this->Association == vtkCompressedVolume::CellData)
+  {
+    return vtkBlockMask();
+  }
+  int given[6], covered[6];
+  for (int i = 0; i < 6; ++i)
+  {
+    given[i] = this->Input[i] - i % 2;
+    covered[i] = this->Covered[i] - i % 2;
+  }
+  return MaskCells(vtkUnsignedCharArray::SafeDownCast(CutOut(flags, given, covered)), this->Size);
+}
+
+//------------------------------------------------------------------------------
 int vtkImageZFPCompress::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -209,6 +332,8 @@ int vtkImageZFPCompress::RequestData(
   this->SetErrorCode(vtkErrorCode::NoError);
   output->Initialize();
   output->CopyStructure(input);
+  output->GetPointData()->Initialize(); // of ghost arrays that hide
+  output->GetCellData()->Initialize();
   output->GetFieldData()->PassData(input->GetFieldData());
   vtkCompressedVolume::Remove(output);
 
@@ -235,7 +360,7 @@ int vtkImageZFPCompress::RequestData(
   {
     vtkErrorMacro(<< error);
   }
-  if (!error.empty() || !this->Compress(array, part, output))
+  if (!error.empty() || !this->Compress(input, array, part, output))
   {
     this->SetErrorCode(vtkErrorCode::UserError);
   }
@@ -276,7 +401,7 @@ vtkDataArray* vtkImageZFPCompress::FindArray(
 std::string vtkImageZFPCompress::Check(vtkImageData* input, vtkDataArray* array, Part& part)
 {
   std::ostringstream error;
-  const int* dims = part.Samples;
+  const int* dims = part.Size;
   const vtkIdType samples = part.Association == vtkCompressedVolume::CellData
     ? input->GetNumberOfCells()
     : input->GetNumberOfPoints();
@@ -304,19 +429,22 @@ std::string vtkImageZFPCompress::Check(vtkImageData* input, vtkDataArray* array,
 }
 
 //------------------------------------------------------------------------------
-bool vtkImageZFPCompress::Compress(vtkDataArray* array, const Part& part, vtkImageData* output)
+bool vtkImageZFPCompress::Compress(
+  vtkImageData* input, vtkDataArray* array, const Part& part, vtkImageData* output)
 {
-  const int* dims = part.Samples;
-  int given[6], covered[6];
-  part.ToSamples(part.Input, given);
-  part.ToSamples(part.Covered, covered);
-  const vtkSmartPointer<vtkDataArray> samples = CutOut(array, given, covered);
+  const int* dims = part.Size;
+  const vtkSmartPointer<vtkDataArray> samples = part.Samples(array);
+  const vtkSmartPointer<vtkUnsignedCharArray> flags = part.HiddenSamples(input);
+  vtkZFPBlocks::Hidden hidden;
+  hidden.Flags = flags ? flags->GetPointer(0) : nullptr;
+  hidden.Hiding = part.Association == vtkCompressedVolume::CellData ? HidingCell : HidingPoint;
+  hidden.NotFinite = this->MaskNonFinite;
   const int blockBits = vtkCompressedVolume::BlockBitsForRate(this->Rate);
   vtkNew<vtkUnsignedCharArray> stream;
   stream->SetNumberOfValues(vtkCompressedVolume::StreamBytesFor(dims, blockBits));
   vtkZFPBlocks blocks(dims, blockBits, stream->GetPointer(0), this->NumberOfThreads);
   vtkZFPBlocks::Summary summary;
-  if (!blocks.Encode(samples, this->Component, 0, blocks.GetNumberOfLayers(), summary,
+  if (!blocks.Encode(samples, this->Component, 0, blocks.GetNumberOfLayers(), hidden, summary,
         vtkZFPBlocks::ReportOf(this)))
   {
     return false;
@@ -331,7 +459,9 @@ bool vtkImageZFPCompress::Compress(vtkDataArray* array, const Part& part, vtkIma
   vtkNew<vtkCompressedVolume> volume;
   volume->SetBlockBits(blockBits);
   volume->SetDimensions(dims);
-  volume->SetRange(summary.Minimum, summary.Maximum);
+  volume->SetRange(summary.GetRange().data());
+  volume->SetHiddenSamples(hidden.Mask);
+  volume->SetHiddenCells(part.HiddenCells(input));
   volume->SetScalarType(array->GetDataType());
   volume->SetArrayName(NameOf(array));
   volume->SetComponent(this->Component);
@@ -348,5 +478,6 @@ void vtkImageZFPCompress::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Rate: " << this->Rate << " (actually " << this->GetActualRate() << ")\n";
   os << indent << "Component: " << this->Component << "\n";
+  os << indent << "MaskNonFinite: " << (this->MaskNonFinite ? "on\n" : "off\n");
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
 }

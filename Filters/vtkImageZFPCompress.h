@@ -15,6 +15,9 @@
  * filter asks for enough ghost levels; put a vtkGhostCellsGenerator before it where the source has
  * none.
  *
+ * Samples of hidden points (of cell data: cells) in the input's ghost arrays are hidden, and so are
+ * hidden cells of point data; the values there do not matter. See MaskNonFinite for NaN.
+ *
  * The array is the one of SetInputArrayToProcess(0, ...), by default the active point scalars, else
  * the first point array, else the active cell scalars, else the first cell array.
  *
@@ -75,6 +78,16 @@ public:
 
   ///@{
   /**
+   * Whether NaN and infinite samples (as float32) are hidden, as those of hidden points are, so
+   * that an isosurface has a hole there. Default off: they are an error that counts them.
+   */
+  vtkSetMacro(MaskNonFinite, bool);
+  vtkGetMacro(MaskNonFinite, bool);
+  vtkBooleanMacro(MaskNonFinite, bool);
+  ///@}
+
+  ///@{
+  /**
    * Threads used to encode; 0, the default, takes all that OpenMP offers (OMP_NUM_THREADS).
    */
   vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
@@ -100,10 +113,11 @@ private:
     vtkInformationVector** inputVector, vtkImageData* input, int& association);
   struct Part;
   std::string Check(vtkImageData* input, vtkDataArray* array, Part& part);
-  bool Compress(vtkDataArray* array, const Part& part, vtkImageData* output);
+  bool Compress(vtkImageData* input, vtkDataArray* array, const Part& part, vtkImageData* output);
 
   double Rate = 8.0;
   int Component = 0;
+  bool MaskNonFinite = false;
   int NumberOfThreads = 0;
 };
 

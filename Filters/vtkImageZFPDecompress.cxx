@@ -16,7 +16,75 @@
 #include "vtkUnsignedCharArray.h"
 #include "vtkZFPBlocks.h"
 
+#include <algorithm>
+#include <limits>
+
 vtkStandardNewMacro(vtkImageZFPDecompress);
+
+namespace
+{
+//------------------------------------------------------------------------------
+// Calls body(number of the element) for all that a mask hides, of `size` elements per axis.
+template <typename Body>
+void ForEachHidden(
+  const vtkBlockMask& mask, const int blocks[3], const vtkIdType size[3], Body body)
+{
+  const std::vector<vtkBlockMask::Run>& runs = mask.GetRuns();
+  const vtkTypeUInt64 end = static_cast<vtkTypeUInt64>(blocks[0]) * blocks[1] * blocks[2];
+  for (std::size_t run = 0; run < runs.size(); ++run)
+  {
+    const vtkTypeUInt64 next = run + 1 < runs.size() ? runs[run + 1].First : end;
+    for (vtkTypeUInt64 block = runs[run].First; runs[run].Bits && block < next; ++block)
+    {
+      for (int i = 0; i < 64; ++i)
+      {
+        const vtkIdType x = 4 * (block % blocks[0]) + i % 4;
+        const vtkIdType y = 4 * (block / blocks[0] % blocks[1]) + i / 4 % 4;
+        const vtkIdType z = 4 * (block / blocks[0] / blocks[1]) + i / 16;
+        if ((runs[run].Bits >> i & 1) && x < size[0] && y < size[1] && z < size[2])
+        {
+          body(x + size[0] * (y + size[1] * z));
+        }
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+// Hidden samples become NaN, and the ghost arrays tell of them and of hidden cells.
+void Hide(vtkCompressedVolume* volume, vtkFloatArray* samples, vtkImageData* output)
+{
+  int blocks[3];
+  volume->GetBlocks(blocks);
+  const int* dims = volume->GetDimensions();
+  const bool cellData = volume->GetAssociation() == vtkCompressedVolume::CellData;
+  if (!volume->GetHiddenSamples().IsEmpty())
+  {
+    vtkUnsignedCharArray* ghosts =
+      cellData ? output->AllocateCellGhostArray() : output->AllocatePointGhostArray();
+    unsigned char flag = vtkDataSetAttributes::HIDDENPOINT;
+    if (cellData)
+    {
+      flag = vtkDataSetAttributes::HIDDENCELL;
+    }
+    const vtkIdType size[3] = { dims[0], dims[1], dims[2] };
+    ForEachHidden(volume->GetHiddenSamples(), blocks, size,
+      [&](vtkIdType sample)
+      {
+        samples->SetValue(sample, std::numeric_limits<float>::quiet_NaN());
+        ghosts->SetValue(sample, ghosts->GetValue(sample) | flag);
+      });
+  }
+  if (!volume->GetHiddenCells().IsEmpty())
+  {
+    vtkUnsignedCharArray* ghosts = output->AllocateCellGhostArray();
+    const vtkIdType size[3] = { dims[0] - 1, dims[1] - 1, dims[2] - 1 };
+    ForEachHidden(volume->GetHiddenCells(), blocks, size,
+      [&](vtkIdType cell)
+      { ghosts->SetValue(cell, ghosts->GetValue(cell) | vtkDataSetAttributes::HIDDENCELL); });
+  }
+}
+}
 
 //------------------------------------------------------------------------------
 int vtkImageZFPDecompress::RequestInformation(
@@ -93,6 +161,7 @@ int vtkImageZFPDecompress::RequestData(
     attributes = output->GetCellData();
   }
   attributes->SetScalars(samples);
+  Hide(volume, samples, output);
   return 1;
 }
 

@@ -7,7 +7,8 @@
  * The inverse of vtkImageZFPCompress: the output is the vtkImageData with the input's geometry and
  * field data (less the stream and its metadata) and one float32 array with one component, the
  * active scalars, under the original name and association (point or cell data). Blocks are decoded
- * in parallel with OpenMP; the values are those of libzfp's zfp_decompress(), bit for bit.
+ * in parallel with OpenMP; the values are those of libzfp's zfp_decompress(), bit for bit. Hidden
+ * samples are NaN, and points or cells that are hidden are marked so in ghost arrays.
  *
  * Errors, one message and an output without array: an input that is not a compressed volume, or
  * whose metadata or stream is inconsistent (see vtkCompressedVolume::Read).

@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstdint>
 #include <sstream>
+#include <vector>
 
 namespace
 {
@@ -25,6 +26,51 @@ constexpr vtkTypeInt64 GroupSize = 64;
 constexpr int GroupsPerTurn = 8;
 // Fraction of the work after which progress is reported.
 constexpr double ReportedStep = 0.01;
+
+//------------------------------------------------------------------------------
+// Gives a block's hidden samples, a bit each, the mean of what is beside them, from the visible
+// ones inwards: the smoother a block is, the better zfp keeps what is visible.
+void FillHidden(float samples[64], vtkTypeUInt64 hidden, const int size[3])
+{
+  const int strides[] = { 1, 4, 16 };
+  while (hidden != 0)
+  {
+    vtkTypeUInt64 left = hidden;
+    for (int i = 0; i < 64; ++i)
+    {
+      if (!(hidden >> i & 1))
+      {
+        continue;
+      }
+      double sum = 0.0;
+      int count = 0;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const int at = i / strides[axis] % 4;
+        for (const int side :
+          { at > 0 ? i - strides[axis] : i, at + 1 < size[axis] ? i + strides[axis] : i })
+        {
+          if (!(hidden >> side & 1))
+          {
+            sum += samples[side];
+            ++count;
+          }
+        }
+      }
+      if (count > 0)
+      {
+        samples[i] = static_cast<float>(sum / count);
+        left &= ~(vtkTypeUInt64(1) << i);
+      }
+    }
+    if (left == hidden) // all of them are
+    {
+      std::fill_n(samples, 64, 0.0f);
+      return;
+    }
+    hidden = left;
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -89,6 +135,13 @@ void vtkZFPBlocks::Summary::Add(const Summary& other)
 }
 
 //------------------------------------------------------------------------------
+std::array<double, 2> vtkZFPBlocks::Summary::GetRange() const
+{
+  const bool any = this->Minimum <= this->Maximum;
+  return { { any ? this->Minimum : 0.0, any ? this->Maximum : 0.0 } };
+}
+
+//------------------------------------------------------------------------------
 float vtkZFPBlocks::Summary::Magnitude() const
 {
   return std::max(std::abs(this->Minimum), std::abs(this->Maximum));
@@ -104,7 +157,8 @@ std::string vtkZFPBlocks::Summary::GetObjection() const
   if (!this->IsFinite())
   {
     objection << this->NaNs << " NaN and " << this->Infinities
-              << " infinite values (as float32), which ZFP cannot compress: replace them first.";
+              << " infinite values (as float32), which ZFP cannot compress: replace them first, or "
+                 "have them hidden (MaskNonFinite).";
   }
   else if (this->TinyBlocks > 0 && this->Magnitude() < enough)
   {
@@ -277,12 +331,17 @@ bool vtkZFPBlocks::ForEachBlock(vtkTypeInt64 first, vtkTypeInt64 last, bool writ
 template <typename ArrayT>
 struct vtkZFPBlocks::Encoder
 {
-  Encoder(const vtkZFPBlocks& blocks, ArrayT* array, int component, vtkTypeInt64 first)
+  Encoder(const vtkZFPBlocks& blocks, ArrayT* array, int component, vtkTypeInt64 first,
+    const Hidden& hidden, std::vector<vtkTypeUInt64>& masks)
     : Values(vtk::DataArrayValueRange(array))
     , Stride(array->GetNumberOfComponents())
     , Row(blocks.Dimensions[0] * this->Stride)
     , Slice(blocks.Dimensions[1] * this->Row)
     , Offset(component - 4 * first * this->Slice)
+    , Blocks{ blocks.Blocks[0], blocks.Blocks[1] }
+    , FirstLayer(first)
+    , HiddenSamples(hidden)
+    , Masks(masks)
   {
   }
 
@@ -290,7 +349,8 @@ struct vtkZFPBlocks::Encoder
   {
     float samples[64];
     Summary found;
-    this->Gather(block, samples, found);
+    this->Masks.empty() ? this->Gather(block, samples, found)
+                        : this->GatherVisible(block, samples, found);
     if (found.IsFinite() && found.Magnitude() < TinyMagnitude() && found.Magnitude() > 0.0f)
     {
       std::fill_n(samples, 64, 0.0f);
@@ -337,6 +397,46 @@ struct vtkZFPBlocks::Encoder
     }
   }
 
+  // The same where some may be hidden, which are kept in Masks.
+  void GatherVisible(const Block& block, float samples[64], Summary& found) const
+  {
+    const vtkTypeInt64 first = block.Sample * this->Stride + this->Offset;
+    vtkTypeUInt64 hidden = 0;
+    for (int z = 0; z < block.Size[2]; ++z)
+    {
+      for (int y = 0; y < block.Size[1]; ++y)
+      {
+        for (int x = 0; x < block.Size[0]; ++x)
+        {
+          const int i = 16 * z + 4 * y + x;
+          samples[i] = this->Value(first, x, y, z);
+          if (this->Hides(first, x, y, z, samples[i]))
+          {
+            hidden |= vtkTypeUInt64(1) << i;
+          }
+          else
+          {
+            found.Add(samples[i]);
+          }
+        }
+      }
+    }
+    const vtkTypeInt64* const position = block.Position;
+    this->Masks[position[0] +
+      this->Blocks[0] * (position[1] + this->Blocks[1] * (position[2] - this->FirstLayer))] =
+      hidden;
+    FillHidden(samples, hidden, block.Size);
+  }
+
+  bool Hides(vtkTypeInt64 first, int x, int y, int z, float value) const
+  {
+    const Hidden& hidden = this->HiddenSamples;
+    const vtkTypeInt64 tuple =
+      (first + x * this->Stride + y * this->Row + z * this->Slice) / this->Stride;
+    return (hidden.Flags && (hidden.Flags[tuple] & hidden.Hiding)) ||
+      (hidden.NotFinite && !std::isfinite(value));
+  }
+
   float Value(vtkTypeInt64 first, int x, int y, int z) const
   {
     return static_cast<float>(
@@ -346,6 +446,10 @@ struct vtkZFPBlocks::Encoder
   decltype(vtk::DataArrayValueRange(std::declval<ArrayT*>())) Values;
   vtkTypeInt64 Stride, Row, Slice; // from a sample to its neighbours, in values
   vtkTypeInt64 Offset;             // of the volume's first value in the array
+  vtkTypeInt64 Blocks[2];          // on x and y
+  vtkTypeInt64 FirstLayer;
+  const Hidden& HiddenSamples;
+  std::vector<vtkTypeUInt64>& Masks; // of all blocks from FirstLayer on; empty: nothing may hide
 };
 
 //------------------------------------------------------------------------------
@@ -353,24 +457,31 @@ struct vtkZFPBlocks::EncodeWorker
 {
   template <typename ArrayT>
   void operator()(ArrayT* array, vtkZFPBlocks& blocks, int component, vtkTypeInt64 first,
-    vtkTypeInt64 last, Summary& summary, const Report& report, bool& complete) const
+    vtkTypeInt64 last, Hidden& hidden, Summary& summary, const Report& report, bool& complete) const
   {
-    const Encoder<ArrayT> encoder(blocks, array, component, first);
+    const vtkTypeInt64 number = (last - first) * blocks.Blocks[0] * blocks.Blocks[1];
+    std::vector<vtkTypeUInt64> masks(hidden.MayHide() ? number : 0);
+    const Encoder<ArrayT> encoder(blocks, array, component, first, hidden, masks);
     complete = blocks.ForEachBlock(first, last, true, summary, report, encoder);
+    for (const vtkTypeUInt64 mask : masks)
+    {
+      hidden.Mask.Append(mask);
+    }
+    hidden.Mask.Append(0, masks.empty() ? number : 0);
   }
 };
 
 //------------------------------------------------------------------------------
 bool vtkZFPBlocks::Encode(vtkDataArray* array, int component, vtkTypeInt64 first, vtkTypeInt64 last,
-  Summary& summary, const Report& report)
+  Hidden& hidden, Summary& summary, const Report& report)
 {
   EncodeWorker worker;
   bool complete = false;
   if (!vtkArrayDispatch::Dispatch::Execute(
-        array, worker, *this, component, first, last, summary, report, complete))
+        array, worker, *this, component, first, last, hidden, summary, report, complete))
   {
     // array classes that VTK does not dispatch to (bits, implicit arrays): through doubles
-    worker(array, *this, component, first, last, summary, report, complete);
+    worker(array, *this, component, first, last, hidden, summary, report, complete);
   }
   return complete;
 }

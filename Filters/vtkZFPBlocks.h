@@ -15,9 +15,11 @@
 #ifndef vtkZFPBlocks_h
 #define vtkZFPBlocks_h
 
+#include "vtkBlockMask.h"
 #include "vtkSmartPointer.h" // for the stream
 #include "vtkType.h"
 
+#include <array>      // for the range
 #include <functional> // for progress
 #include <limits>     // for the empty range
 #include <string>     // for what is wrong with values
@@ -40,6 +42,8 @@ public:
     vtkTypeInt64 Infinities = 0;
     vtkTypeInt64 TinyBlocks = 0; ///< blocks encoded as zero, see Encode()
 
+    /// Minimum and maximum; zeros where nothing was seen.
+    std::array<double, 2> GetRange() const;
     bool IsFinite() const { return this->NaNs == 0 && this->Infinities == 0; }
     float Magnitude() const; ///< largest absolute value
     void Add(float value);
@@ -75,6 +79,20 @@ public:
   static Report ReportOf(vtkAlgorithm* algorithm);
 
   /**
+   * Samples that are not to be seen: which, and the mask that was made of them. They get values
+   * that cost zfp little, and a summary leaves them out.
+   */
+  struct Hidden
+  {
+    const unsigned char* Flags = nullptr; ///< of every tuple; null: none has any
+    unsigned char Hiding = 0;             ///< flags that hide
+    bool NotFinite = false;               ///< whether NaN and infinite samples are hidden
+    vtkBlockMask Mask;                    ///< of the blocks encoded so far
+
+    bool MayHide() const { return this->Flags || this->NotFinite; }
+  };
+
+  /**
    * Encode layers [first, last) from one component of an array that holds their tuples, the first
    * being that of layer `first`. Layers must be encoded in order, each once. As soon as a value
    * that is not finite (as float32) has been seen, here or in `summary`, values are counted but no
@@ -85,7 +103,7 @@ public:
    * blocks are encoded as zero, and counted.
    */
   bool Encode(vtkDataArray* array, int component, vtkTypeInt64 first, vtkTypeInt64 last,
-    Summary& summary, const Report& report);
+    Hidden& hidden, Summary& summary, const Report& report);
   vtkTypeInt64 GetNumberOfLayers() const { return this->Blocks[2]; }
 
   static float TinyMagnitude() { return 3.1554436e-30f; } // 2^-98

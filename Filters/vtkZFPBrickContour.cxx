@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkZFPBrickContour.h"
 
+#include "vtkBlockMask.h"
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
 #include "vtkFloatArray.h"
@@ -74,6 +75,10 @@ std::unique_ptr<vtkZFPBrickContour::Part> vtkZFPBrickContour::Extract(
     vtkIdType size = 0;
     const vtkIdType* corners = nullptr;
     iterator->GetCurrentCell(size, corners);
+    if (this->Hidden && !this->IsInVisibleCell(surface, corners, this->Bricks.GetBox(brick)))
+    {
+      continue;
+    }
     for (vtkIdType i = 0; i < size; ++i)
     {
       part->Corners.push_back(numbers[corners[i]]);
@@ -102,6 +107,10 @@ std::vector<int> vtkZFPBrickContour::AddPoints(
       const int whole = static_cast<int>(middle[axis]);
       place.Sample[axis] = box.First[axis] + whole;
       place.Axis = middle[axis] > whole ? axis : place.Axis;
+    }
+    if (this->Hidden && !this->IsVisible(place))
+    {
+      continue; // no triangle that is left has it
     }
     const Edge edge = this->GetEdge(place);
     if (this->Bricks.FindOwner(place.Sample) != part.Brick)
@@ -155,6 +164,51 @@ bool vtkZFPBrickContour::IsShared(const EdgePlace& place, const vtkZFPBricks::Bo
 }
 
 //------------------------------------------------------------------------------
+// Whether any of the cells around an edge is visible.
+bool vtkZFPBrickContour::IsVisible(const EdgePlace& place) const
+{
+  const int* const dims = this->Bricks.GetDimensions();
+  const int blocks[3] = { (dims[0] + 3) / 4, (dims[1] + 3) / 4, (dims[2] + 3) / 4 };
+  for (int side = 0; side < 4; ++side)
+  {
+    int cell[3] = { place.Sample[0], place.Sample[1], place.Sample[2] };
+    cell[(place.Axis + 1) % 3] -= side & 1;
+    cell[(place.Axis + 2) % 3] -= side >> 1;
+    const auto exists = [&](int axis) { return cell[axis] >= 0 && cell[axis] + 1 < dims[axis]; };
+    if (exists(0) && exists(1) && exists(2) && !this->Hidden->Hides(cell, blocks))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+//------------------------------------------------------------------------------
+// A triangle between the middles of a cell's edges has its centre in the cell, or, seldom, in the
+// face that it shares with another.
+bool vtkZFPBrickContour::IsInVisibleCell(
+  vtkPolyData* surface, const vtkIdType corners[3], const vtkZFPBricks::Box& box) const
+{
+  const int* const dims = this->Bricks.GetDimensions();
+  const int blocks[3] = { (dims[0] + 3) / 4, (dims[1] + 3) / 4, (dims[2] + 3) / 4 };
+  double sum[3] = { 0.0, 0.0, 0.0 };
+  for (int i = 0; i < 3; ++i)
+  {
+    double point[3];
+    surface->GetPoint(corners[i], point);
+    vtkMath::Add(sum, point, sum);
+  }
+  int high[3], low[3]; // alike but where the centre is in a face
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int sixths = static_cast<int>(2.0 * sum[axis]); // exact: coordinates are halves
+    high[axis] = std::min(box.First[axis] + sixths / 6, dims[axis] - 2);
+    low[axis] = sixths % 6 == 0 && sixths > 0 ? box.First[axis] + sixths / 6 - 1 : high[axis];
+  }
+  return !this->Hidden->Hides(high, blocks) || !this->Hidden->Hides(low, blocks);
+}
+
+//------------------------------------------------------------------------------
 // In the operations and precision of vtkFlyingEdges3D, so that every bit agrees.
 void vtkZFPBrickContour::AddPoint(
   const EdgePlace& place, const vtkZFPBricks::Samples& samples, double isovalue, Part& part) const
@@ -194,20 +248,30 @@ void vtkZFPBrickContour::AddPoint(
 }
 
 //------------------------------------------------------------------------------
-// Central differences, one-sided at the volume's borders.
+// Central differences, one-sided at the volume's borders and where the next samples are hidden.
 void vtkZFPBrickContour::FindGradient(
   const int sample[3], const vtkZFPBricks::Samples& samples, float gradient[3]) const
 {
   const float* const value = samples.At(sample[0], sample[1], sample[2]);
   for (int axis = 0; axis < 3; ++axis)
   {
-    const bool low = sample[axis] == 0;
-    const bool high = sample[axis] == this->Bricks.GetDimensions()[axis] - 1;
+    const bool low = !this->HasNeighbour(sample, axis, -1);
+    const bool high = !this->HasNeighbour(sample, axis, 1);
     const float below = low ? *value : value[-samples.Stride[axis]];
     const float above = high ? *value : value[samples.Stride[axis]];
     const float difference = above - below;
     gradient[axis] = low || high ? difference : static_cast<float>(0.5 * difference);
   }
+}
+
+//------------------------------------------------------------------------------
+bool vtkZFPBrickContour::HasNeighbour(const int sample[3], int axis, int side) const
+{
+  const int next = sample[axis] + side;
+  EdgePlace place = { { sample[0], sample[1], sample[2] }, axis };
+  place.Sample[axis] = std::min(next, sample[axis]);
+  return next >= 0 && next < this->Bricks.GetDimensions()[axis] &&
+    (!this->Hidden || this->IsVisible(place));
 }
 
 //------------------------------------------------------------------------------

@@ -23,6 +23,7 @@
 #include <memory> // for parts
 #include <vector> // for what is extracted
 
+class vtkBlockMask;
 class vtkPolyData;
 
 class vtkZFPBrickContour
@@ -72,6 +73,13 @@ public:
   bool ComputeNormals = true;
   bool ComputeGradients = false;
   ///@}
+
+  /**
+   * Cells that have no surface, see vtkCompressedVolume::GetCellsWithoutSurface(); null: every cell
+   * may have one.
+   */
+  const vtkBlockMask* Hidden = nullptr;
+
   int GetHalo() const { return this->ComputeNormals || this->ComputeGradients ? 1 : 0; }
 
   /**
@@ -95,6 +103,10 @@ private:
   Edge GetEdge(const EdgePlace& place) const;
   vtkIdType FindOwner(Edge edge) const;
   bool IsShared(const EdgePlace& place, const vtkZFPBricks::Box& box) const;
+  bool IsVisible(const EdgePlace& place) const;
+  bool IsInVisibleCell(
+    vtkPolyData* surface, const vtkIdType corners[3], const vtkZFPBricks::Box& box) const;
+  bool HasNeighbour(const int sample[3], int axis, int side) const;
   void AddPoint(const EdgePlace& place, const vtkZFPBricks::Samples& samples, double isovalue,
     Part& part) const;
   void FindGradient(

@@ -152,11 +152,13 @@ public:
     , Blocks(volume->GetDimensions(), volume->GetBlockBits(), this->Stream->GetPointer(0), 1)
     , Bricks(volume->GetDimensions(), self->BrickSize)
     , Contour(this->Bricks, extentStart)
+    , Hidden(volume->GetCellsWithoutSurface())
     , BrickRanges(*self->BrickRanges)
     , Values(self->GetValues(), self->GetValues() + self->GetNumberOfContours())
   {
     this->Contour.ComputeNormals = self->ComputeNormals;
     this->Contour.ComputeGradients = self->ComputeGradients;
+    this->Contour.Hidden = this->Hidden.IsEmpty() ? nullptr : &this->Hidden;
     if (!this->BrickRanges.IsOf(volume, self->BrickSize))
     {
       this->BrickRanges.Reset(volume, self->BrickSize, this->Bricks.GetNumberOfBricks());
@@ -193,6 +195,7 @@ private:
   vtkZFPBlocks Blocks;
   vtkZFPBricks Bricks;
   vtkZFPBrickContour Contour;
+  vtkBlockMask Hidden;
   Ranges& BrickRanges;
   std::vector<double> Values;
   // for every isovalue, one after the other, the part of every brick; null where there is none

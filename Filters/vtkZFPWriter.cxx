@@ -148,6 +148,12 @@ void vtkZFPWriter::WriteData()
                   "decompress it, compress it again and write that.");
     this->SetErrorCode(vtkErrorCode::UserError);
   }
+  else if (volume->HidesAny())
+  {
+    vtkErrorMacro("The input has hidden samples or cells, and a zfp file has no place for them: "
+                  "write it as .vti.");
+    this->SetErrorCode(vtkErrorCode::UserError);
+  }
   else
   {
     this->WriteFile(volume);

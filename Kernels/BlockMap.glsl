@@ -11,15 +11,6 @@ ivec3 SideOffset(int i)
   return ivec3(i) >> ivec3(0, 1, 2) & 1;
 }
 
-uint NumberOfSlots()
-{
-#ifdef HAS_CACHE_MAP
-  return scene.Cache.x;
-#else
-  return uint(scene.Blocks.w);
-#endif
-}
-
 uint SlotOf(ivec3 block)
 {
 #ifdef HAS_CACHE_MAP

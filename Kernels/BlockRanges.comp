@@ -1,7 +1,8 @@
 // Macrocell grid construction (section 3.1), once a volume: a work group takes the blocks of a macrocell and those
 // that its dual grids reach into, decodes them unless the whole volume is decoded already, and keeps the exact value
-// range of every block's 5^3 dual grid, quantised outwards to 8 + 8 bits within the range of the macrocell.
-// In: Payload or CacheValues. Out: Macrocells.
+// range of every block's 5^3 dual grid, quantised outwards to 8 + 8 bits within the range of the macrocell. Samples of
+// hidden cells alone do not count.
+// In: Payload or CacheValues, HiddenCells. Out: Macrocells.
 
 #define CACHE_BY_ROWS
 
@@ -12,6 +13,9 @@
 #ifdef BINDING_PAYLOAD
 #include "BlockStore.glsl"
 #include "ZFPDecode.glsl"
+#endif
+#ifdef HAS_HIDDEN_CELLS
+#include "HiddenCells.glsl"
 #endif
 
 layout(local_size_x = 32) in; // LANES
@@ -69,6 +73,31 @@ void LoadSamples(ivec3 firstBlock)
   barrier();
 }
 
+void Extend(inout vec2 range, ivec3 at)
+{
+  float value = samples[at.x + GRID * (at.y + GRID * at.z)];
+  range = vec2(min(range.x, value), max(range.y, value));
+}
+
+#ifdef HAS_HIDDEN_CELLS
+// Where some of a block's cells are hidden: of the corners of the others, of `count` cells per axis.
+vec2 VisibleRange(vec2 range, uvec2 hidden, ivec3 local, ivec3 count)
+{
+  for (int i = 0; i < 64; ++i)
+  {
+    ivec3 cell = ivec3(i, i >> 2, i >> 4) & 3;
+    if (all(lessThan(cell, count)) && !Hides(hidden, cell))
+    {
+      for (int corner = 0; corner < 8; ++corner)
+      {
+        Extend(range, 4 * local + cell + (ivec3(corner, corner >> 1, corner >> 2) & 1));
+      }
+    }
+  }
+  return range;
+}
+#endif
+
 // Range of a block's dual grid; empty (low > high) where the block has no cells.
 vec2 DualGridRange(ivec3 firstBlock, ivec3 local)
 {
@@ -79,6 +108,13 @@ vec2 DualGridRange(ivec3 firstBlock, ivec3 local)
   {
     return range;
   }
+#ifdef HAS_HIDDEN_CELLS
+  uvec2 hidden = FindHiddenCells(BlockIndex(firstBlock + local));
+  if (hidden != uvec2(0u))
+  {
+    return VisibleRange(range, hidden, local, last - first);
+  }
+#endif
   ivec3 count = last - first + 1;
   for (int z = 0; z < count.z; ++z)
   {
@@ -86,9 +122,7 @@ vec2 DualGridRange(ivec3 firstBlock, ivec3 local)
     {
       for (int x = 0; x < count.x; ++x)
       {
-        ivec3 at = 4 * local + ivec3(x, y, z);
-        float value = samples[at.x + GRID * (at.y + GRID * at.z)];
-        range = vec2(min(range.x, value), max(range.y, value));
+        Extend(range, 4 * local + ivec3(x, y, z));
       }
     }
   }

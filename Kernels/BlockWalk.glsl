@@ -12,15 +12,20 @@ ivec3 CellAt(Ray ray, ivec3 block, double t)
   return entry - (1 - ray.Step) / 2 + crossed * ray.Step;
 }
 
+#ifdef HAS_HIDDEN_CELLS
+#include "HiddenCells.glsl"
+#endif
+
 vec4 LoadSamples(uvec4 at)
 {
   return uintBitsToFloat(uvec4(cacheValues[at.x], cacheValues[at.y], cacheValues[at.z], cacheValues[at.w]));
 }
 
+// In sixteenths: nothing overflows that is made of it on the way to a root, and a power of two changes no other bit.
 vec4 Excess(vec4 values, int surface)
 {
-  vec4 isovalue = scene.Isovalues[surface];
-  precise vec4 excess = (values - isovalue.x) - isovalue.y;
+  vec2 isovalue = 0.0625 * scene.Isovalues[surface].xy;
+  precise vec4 excess = (0.0625 * values - isovalue.x) - isovalue.y;
   return excess;
 }
 
@@ -74,6 +79,30 @@ bool HoldsSurface(Corners w)
   return false;
 #else
   return Straddle(w);
+#endif
+}
+
+// What is hidden of a block, whose slots, with a cache, were found last.
+uvec2 HiddenCellsOf(ivec3 block)
+{
+#ifdef HAS_HIDDEN_CELLS
+#ifdef HAS_CACHE_MAP
+  uint at = 4u * HiddenRow(lowSlots.x);
+#else
+  uint at = 4u * HiddenRow(BlockIndex(block));
+#endif
+  return uvec2(cacheValues[at], cacheValues[at + 1u]);
+#else
+  return uvec2(0u);
+#endif
+}
+
+bool IsVisible(uvec2 hidden, ivec3 cell)
+{
+#ifdef HAS_HIDDEN_CELLS
+  return !Hides(hidden, cell);
+#else
+  return true;
 #endif
 }
 
@@ -157,6 +186,7 @@ bool IntersectBlock(Ray ray, ivec3 block, double t0, double end, out Hit hit)
 {
   hit = MISS;
   ivec3 cell = CellAt(ray, block, t0);
+  uvec2 hidden = HiddenCellsOf(block);
   for (int tested = 0; tested < 16; ++tested) // a ray crosses at most 10 cells of 4^3
   {
     Corners w;
@@ -168,7 +198,7 @@ bool IntersectBlock(Ray ray, ivec3 block, double t0, double end, out Hit hit)
       exits = PlanesT(ray, ExitPlanes(ray, cell, 1));
       t1 = min(SmallestOf(exits), end);
       w = LoadCorners(cell);
-      crossed = HoldsSurface(w);
+      crossed = HoldsSurface(w) && IsVisible(hidden, cell);
       if (crossed || t1 >= end)
       {
         break;

@@ -84,6 +84,11 @@ struct Macrocell
 };
 layout(std430, binding = BINDING_MACROCELLS) buffer Macrocells { Macrocell macrocells[]; };
 #endif
+#ifdef BINDING_HIDDEN_CELLS
+// Which cells are hidden, as runs of blocks that are alike: how many runs there are, the first block of each, and then two
+// words of bits for each. See HiddenCells.glsl.
+layout(std430, binding = BINDING_HIDDEN_CELLS) readonly buffer HiddenCells { uint hiddenRuns; uint hiddenCells[]; };
+#endif
 
 // ---- the image
 #ifdef BINDING_HITS
@@ -105,7 +110,9 @@ layout(std430, binding = BINDING_RAYS) buffer Rays { uint rays[]; };
 
 // ---- the block cache
 #ifdef BINDING_CACHE_VALUES
-// 64 samples a slot, x fastest, and behind all slots likewise those of the volume that gives the colours; a stage that defines CACHE_BY_ROWS has them in rows of four.
+// 64 samples a slot, x fastest; behind all slots likewise those of the volume that gives the colours, and then, where cells
+// are hidden, 4 words a slot: the bits of its block's cells, and two of no use. A stage that defines CACHE_BY_ROWS has all in
+// rows of four.
 #ifdef CACHE_BY_ROWS
 layout(std430, binding = BINDING_CACHE_VALUES) buffer CacheValues { uvec4 cacheRows[]; };
 #else

@@ -20,6 +20,10 @@ uint BlockAt(uint i)
 #endif
 }
 
+#ifdef BINDING_HIDDEN_CELLS
+#include "HiddenCells.glsl"
+#endif
+
 void StoreBlock(uint slot, DecodedBlock decoded)
 {
 #define STORE_ROW(r) cacheRows[16u * slot + uint(r)] = decoded.Row[r];
@@ -40,6 +44,9 @@ void main()
       if (slot != NONE)
       {
         StoreBlock(FirstSlot() + slot, DecodeBlock(block, lane));
+#ifdef BINDING_HIDDEN_CELLS
+        cacheRows[HiddenRow(slot)] = uvec4(FindHiddenCells(block), 0u, 0u);
+#endif
       }
     }
   }

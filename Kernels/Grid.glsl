@@ -29,6 +29,16 @@ uint LocalIndex(ivec3 block)
   return local.x + 4u * local.y + 16u * local.z;
 }
 
+// Blocks that have room decoded: in the cache, or all of them.
+uint NumberOfSlots()
+{
+#ifdef HAS_CACHE_MAP
+  return scene.Cache.x;
+#else
+  return uint(scene.Blocks.w);
+#endif
+}
+
 // A block's range is kept in 8 + 8 bits, as steps within its macrocell's range, rounded outwards.
 float RangeLow(vec2 coarse, uint q)
 {

@@ -1,5 +1,5 @@
 // The surface's normal where a ray has met it: the trilinear interpolant of the voxels' central differences, as
-// in VTK's mapper, hence continuous across cells and blocks.
+// in VTK's mapper, hence continuous across cells and blocks; one-sided at the volume's border, as in VTK's meshes.
 
 struct SurfacePoint
 {
@@ -63,12 +63,12 @@ Stencil PlaceStencil(ivec3 cell)
   return at;
 }
 
-// A sample by its planes on x, y and z: x, y, z, w of the four.
+// An eighth of a sample, so that no difference overflows, by its planes on x, y and z: x, y, z, w of the four.
 #ifdef HAS_CACHE_MAP
-#define SAMPLE(i, j, k) uintBitsToFloat( \
-  cacheValues[64u * SlotAt(bvec3(at.FurtherX.i, at.FurtherY.j, at.FurtherZ.k)) + at.X.i + at.Y.j + at.Z.k])
+#define SAMPLE(i, j, k) (0.125 * uintBitsToFloat( \
+  cacheValues[64u * SlotAt(bvec3(at.FurtherX.i, at.FurtherY.j, at.FurtherZ.k)) + at.X.i + at.Y.j + at.Z.k]))
 #else
-#define SAMPLE(i, j, k) uintBitsToFloat(cacheValues[at.X.i + at.Y.j + at.Z.k])
+#define SAMPLE(i, j, k) (0.125 * uintBitsToFloat(cacheValues[at.X.i + at.Y.j + at.Z.k]))
 #endif
 
 #ifdef COLORED
@@ -91,6 +91,48 @@ float ColorValue(SurfacePoint hit)
 }
 #endif
 
+#ifdef HAS_HIDDEN_CELLS
+#include "HiddenCells.glsl"
+
+// Of the 27 cells around a cell, itself the middle one, x fastest, which are hidden; beyond the volume its last cells count.
+uint HiddenAround(ivec3 cell)
+{
+  ivec3 first = FirstStencilBlock(cell);
+  uint around = 0u;
+  for (int i = 0; i < 27; ++i)
+  {
+    ivec3 other = clamp(cell + ivec3(i % 3, i / 3 % 3, i / 9) - 1, ivec3(0), scene.Samples.xyz - 2);
+#ifdef HAS_CACHE_MAP
+    uint slot = SlotAt(notEqual(other >> 2, first));
+#else
+    uint slot = BlockIndex(other >> 2);
+#endif
+    uint at = 4u * HiddenRow(slot);
+    around |= Hides(uvec2(cacheValues[at], cacheValues[at + 1u]), other) ? 1u << i : 0u;
+  }
+  return around;
+}
+
+// Is an edge of the grid one of hidden cells only? `cells` are the bits of the four around it, moved by `place`.
+bool OfHidden(uint around, uint cells, int place)
+{
+  return (around >> place & cells) == cells;
+}
+
+#define CELLS_X (1u | 1u << 3 | 1u << 9 | 1u << 12) // around an edge along x, y, z
+#define CELLS_Y (1u | 1u << 1 | 1u << 9 | 1u << 10)
+#define CELLS_Z (1u | 1u << 1 | 1u << 3 | 1u << 4)
+
+// The samples beyond four corners' edges out of the cell, from the plane `place` on; those of hidden cells have no values
+// that count, and what the corners and those opposite to them lead to stands in.
+vec4 Beyond(vec4 samples, vec4 corners, vec4 opposite, uint around, uint cells, ivec4 places)
+{
+  bvec4 none = bvec4(OfHidden(around, cells, places.x), OfHidden(around, cells, places.y),
+    OfHidden(around, cells, places.z), OfHidden(around, cells, places.w));
+  return mix(samples, 2.0 * corners - opposite, none);
+}
+#endif
+
 // Central differences at the cell's corners, interpolated. Planes y and z of the stencil are the cell's own.
 vec3 Gradient(SurfacePoint hit)
 {
@@ -104,13 +146,27 @@ vec3 Gradient(SurfacePoint hit)
   vec4 behindY = vec4(SAMPLE(y, w, y), SAMPLE(z, w, y), SAMPLE(y, w, z), SAMPLE(z, w, z));
   vec4 beforeZ = vec4(SAMPLE(y, y, x), SAMPLE(z, y, x), SAMPLE(y, z, x), SAMPLE(z, z, x));
   vec4 behindZ = vec4(SAMPLE(y, y, w), SAMPLE(z, y, w), SAMPLE(y, z, w), SAMPLE(z, z, w));
-  // differences on the four edges in the axis' direction, at their near and their far ends
-  vec4 nearX = vec4(low.yw, high.yw) - beforeX;
-  vec4 farX = behindX - vec4(low.xz, high.xz);
-  vec4 nearY = vec4(low.zw, high.zw) - beforeY;
-  vec4 farY = behindY - vec4(low.xy, high.xy);
-  vec4 nearZ = high - beforeZ;
-  vec4 farZ = behindZ - low;
+#ifdef HAS_HIDDEN_CELLS
+  uint around = HiddenAround(hit.Cell);
+  vec4 leftX = vec4(low.xz, high.xz), rightX = vec4(low.yw, high.yw);
+  vec4 leftY = vec4(low.xy, high.xy), rightY = vec4(low.zw, high.zw);
+  beforeX = Beyond(beforeX, leftX, rightX, around, CELLS_X, ivec4(0, 3, 9, 12));
+  behindX = Beyond(behindX, rightX, leftX, around, CELLS_X, ivec4(2, 5, 11, 14));
+  beforeY = Beyond(beforeY, leftY, rightY, around, CELLS_Y, ivec4(0, 1, 9, 10));
+  behindY = Beyond(behindY, rightY, leftY, around, CELLS_Y, ivec4(6, 7, 15, 16));
+  beforeZ = Beyond(beforeZ, low, high, around, CELLS_Z, ivec4(0, 1, 3, 4));
+  behindZ = Beyond(behindZ, high, low, around, CELLS_Z, ivec4(18, 19, 21, 22));
+#endif
+  // differences on the four edges in the axis' direction, at their near and their far ends; over two voxels, but at the
+  // volume's border over one
+  vec3 near = mix(vec3(1.0), vec3(2.0), equal(hit.Cell, ivec3(0)));
+  vec3 far = mix(vec3(1.0), vec3(2.0), equal(hit.Cell + 2, scene.Samples.xyz));
+  vec4 nearX = near.x * (vec4(low.yw, high.yw) - beforeX);
+  vec4 farX = far.x * (behindX - vec4(low.xz, high.xz));
+  vec4 nearY = near.y * (vec4(low.zw, high.zw) - beforeY);
+  vec4 farY = far.y * (behindY - vec4(low.xy, high.xy));
+  vec4 nearZ = near.z * (high - beforeZ);
+  vec4 farZ = far.z * (behindZ - low);
   vec3 u = hit.Local;
   vec4 onX = mix(nearX, farX, u.x);
   vec4 onY = mix(nearY, farY, u.y);

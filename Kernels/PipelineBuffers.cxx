@@ -25,6 +25,11 @@ std::int64_t MacrocellBytes(const PipelineExtent& e)
   return (8 + 2 * 64 + (e.Cached ? 4 + 64 / 8 : 0)) * e.CoarseCells;
 }
 
+std::int64_t HiddenBytes(const PipelineExtent& e)
+{
+  return 4 * e.HiddenWords;
+}
+
 // of the hit the key and the depth; see Hits.glsl for the rest
 std::int64_t HitBytes(const PipelineExtent& e)
 {
@@ -83,6 +88,7 @@ const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers()
     { Buffer::Payload,        "compressed",       "PAYLOAD",          Lifetime::Volume,   PayloadBytes,    "the mapper",                            "BlockRanges, DecodeBlocks" },
     { Buffer::ColorPayload,   "compressed_colors", "PAYLOAD",         Lifetime::Volume,   PayloadBytes,    "the mapper",                            "DecodeColors" },
     { Buffer::Macrocells,     "macrocells",       "MACROCELLS",       Lifetime::Volume,   MacrocellBytes,  "BlockRanges, FindNormals, RequestBlocks, DecodeBlocks, CacheEvict, CacheReset", "CastRays, CastFewRays, FindNormals, RequestBlocks, DecodeBlocks" },
+    { Buffer::HiddenCells,    "hidden_cells",     "HIDDEN_CELLS",     Lifetime::Volume,   HiddenBytes,     "the mapper",                            "BlockRanges, DecodeBlocks" },
     { Buffer::Hits,           "hits",             "HITS",             Lifetime::Image,    HitBytes,        "CastRays, CastFewRays, the mapper",     "all stages that cast rays, Composite, Select" },
     { Buffer::Normals,        "normals",          "NORMALS",          Lifetime::Image,    NormalBytes,     "FindNormals",                           "FindNormals, Composite" },
     { Buffer::Layers,         "layers",           "LAYERS",           Lifetime::Image,    LayerBytes,      "FindNormals",                           "FindNormals, Composite" },
@@ -99,7 +105,7 @@ const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers()
 
 std::int64_t BytesPerSlot(const PipelineExtent& extent)
 {
-  return extent.Colored ? 2 * 256 : 256;
+  return (extent.Colored ? 2 * 256 : 256) + (extent.HiddenWords > 0 ? 16 : 0);
 }
 
 std::int64_t BytesOf(Lifetime lifetime, const PipelineExtent& extent)

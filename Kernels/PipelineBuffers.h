@@ -15,6 +15,7 @@ enum class Buffer
   Payload,
   ColorPayload,
   Macrocells,
+  HiddenCells,
   Hits,
   Normals,
   Layers,
@@ -33,8 +34,9 @@ struct PipelineExtent
 {
   std::int64_t CoarseCells = 0;
   std::int64_t Pixels = 0;
-  std::int64_t Slots = 0; ///< blocks that the cache holds, or all blocks of the volume
-  std::int64_t Pages = 0; ///< of the block map
+  std::int64_t Slots = 0;       ///< blocks that the cache holds, or all blocks of the volume
+  std::int64_t Pages = 0;       ///< of the block map
+  std::int64_t HiddenWords = 0; ///< that tell which cells are hidden; 0: none is
 
   bool Cached = true;    ///< false: the whole volume is decoded, once
   bool Lit = false;      ///< hits need normals
@@ -51,7 +53,7 @@ struct PipelineExtent
   {
     return this->Cached | this->Lit << 1 | this->Detailed << 2 | this->SeveralIsovalues << 3 |
       this->Translucent << 4 | this->Obstructed << 5 | this->Clipped << 6 | this->Cropped << 7 |
-      this->Colored << 8;
+      this->Colored << 8 | (this->HiddenWords > 0) << 9;
   }
   /// Do rays begin and end in one pass?
   bool IsSinglePass() const { return !this->Cached && !this->Translucent; }
@@ -80,7 +82,7 @@ struct BufferInfo
 /// The table itself, in the order of the enumeration. The payload's size is the stream's.
 const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers();
 
-/// Bytes of the decoded samples of a cache slot.
+/// Bytes of a cache slot: of its decoded samples, and what is hidden.
 std::int64_t BytesPerSlot(const PipelineExtent& extent);
 
 /// Bytes of all buffers of a lifetime.

@@ -494,6 +494,17 @@ void PipelineResources::Fill(Buffer buffer, std::uint32_t value)
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
 }
 
+void PipelineResources::Upload(Buffer buffer, const std::vector<std::uint32_t>& words)
+{
+  if (!words.empty())
+  {
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, this->Names[Index(buffer)]);
+    glBufferSubData(
+      GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(4 * words.size()), words.data());
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
+  }
+}
+
 // The stages only read it, and it may be too large for a second copy.
 bool PipelineResources::UploadPayload(
   Buffer which, const unsigned char* stream, const std::vector<PayloadSegment>& segments)

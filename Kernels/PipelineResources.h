@@ -71,6 +71,9 @@ public:
   std::int64_t GetStagingBytes() const;
   ///@}
 
+  /// Fill a buffer that the stages only read.
+  void Upload(Buffer buffer, const std::vector<std::uint32_t>& words);
+
   ///@{ A compressed stream, in as many buffers as it takes: of Payload or of ColorPayload.
   bool UploadPayload(
     Buffer which, const unsigned char* stream, const std::vector<PayloadSegment>& segments);

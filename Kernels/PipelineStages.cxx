@@ -11,7 +11,7 @@ const std::vector<StageInfo>& PipelineStages()
   using B = Buffer;
   // clang-format off
   static const std::vector<StageInfo> stages = {
-    { Stage::BlockRanges,   "BlockRanges",   { B::Macrocells, B::Payload, B::CacheValues } },
+    { Stage::BlockRanges,   "BlockRanges",   { B::Macrocells, B::Payload, B::HiddenCells, B::CacheValues } },
     { Stage::PlanPass,      "PlanPass",      { B::Control, B::PassStatistics } },
     { Stage::CacheReset,    "CacheReset",    { B::Control, B::Macrocells, B::CacheMap, B::CacheFreeSlots } },
     { Stage::CacheAges,     "CacheAges",     { B::Control, B::CacheMap } },
@@ -20,7 +20,7 @@ const std::vector<StageInfo>& PipelineStages()
     { Stage::CastFewRays,   "CastFewRays",   { B::Control, B::Macrocells, B::CacheMap, B::CacheValues, B::Hits, B::Rays, B::CacheSeen } },
     { Stage::FindNormals,   "FindNormals",   { B::Control, B::Macrocells, B::CacheMap, B::CacheValues, B::CacheRequests, B::Hits, B::Normals, B::Layers, B::Rays } },
     { Stage::RequestBlocks, "RequestBlocks", { B::Control, B::Macrocells, B::CacheMap, B::CacheRequests, B::Hits, B::Rays } },
-    { Stage::DecodeBlocks,  "DecodeBlocks",  { B::Control, B::Payload, B::Macrocells, B::CacheMap, B::CacheFreeSlots, B::CacheRequests, B::CacheValues } },
+    { Stage::DecodeBlocks,  "DecodeBlocks",  { B::Control, B::Payload, B::HiddenCells, B::Macrocells, B::CacheMap, B::CacheFreeSlots, B::CacheRequests, B::CacheValues } },
     { Stage::DecodeColors,  "DecodeColors",  { B::Control, B::ColorPayload, B::Macrocells, B::CacheMap, B::CacheRequests, B::CacheValues } },
     { Stage::Composite,     "Composite",     { B::Hits, B::Normals, B::Layers } },
     { Stage::Select,        "Select",        { B::Hits } },

@@ -169,6 +169,7 @@ void ProgressivePipeline::SetVolume(const PipelineVolume& volume)
   this->Scene.CoarseCells[3] = static_cast<std::int32_t>(coarseCells);
   this->Extent.CoarseCells = coarseCells;
   this->Extent.Colored = volume.Colors.Data != nullptr;
+  this->Extent.HiddenWords = static_cast<std::int64_t>(volume.Hidden.size());
   this->TouchedSlots.clear();
 }
 
@@ -251,10 +252,20 @@ bool ProgressivePipeline::UploadStreams()
     this->Gpu.UploadPayload(Buffer::ColorPayload, this->Volume.Colors.Data, segments);
 }
 
+bool ProgressivePipeline::MakeVolumeBuffers()
+{
+  if (!this->Gpu.Allocate(Lifetime::Volume, this->Extent))
+  {
+    return false;
+  }
+  this->Gpu.Upload(Buffer::HiddenCells, this->Volume.Hidden);
+  return true;
+}
+
 // The stream goes to the GPU and stays there; its macrocells are made (section 3.1).
 bool ProgressivePipeline::LoadVolume()
 {
-  if (!this->Gpu.Allocate(Lifetime::Volume, this->Extent) || !this->UploadStreams())
+  if (!this->MakeVolumeBuffers() || !this->UploadStreams())
   {
     return false;
   }
@@ -265,8 +276,8 @@ bool ProgressivePipeline::LoadVolume()
 // The stream goes to the GPU, is decoded, and goes again.
 bool ProgressivePipeline::LoadWholeVolume()
 {
-  if (!this->Gpu.Allocate(Lifetime::Volume, this->Extent) ||
-    !this->Gpu.Allocate(Lifetime::Cache, this->Extent) || !this->UploadStreams())
+  if (!this->MakeVolumeBuffers() || !this->Gpu.Allocate(Lifetime::Cache, this->Extent) ||
+    !this->UploadStreams())
   {
     return false;
   }

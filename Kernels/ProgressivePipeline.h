@@ -29,6 +29,7 @@ struct PipelineVolume
   int Samples[3] = { 0, 0, 0 };
   CompressedStream Values;
   CompressedStream Colors;
+  std::vector<std::uint32_t> Hidden; ///< cells: see HiddenCells in Buffers.glsl; empty: none
 };
 
 struct PipelineSettings
@@ -126,6 +127,7 @@ private:
 
   bool SplitPayload(const CompressedStream& stream, std::vector<PayloadSegment>& segments);
   bool UploadStreams();
+  bool MakeVolumeBuffers();
   bool LoadVolume();
   bool LoadWholeVolume();
   bool ResizeCache(std::int64_t slots);

@@ -71,10 +71,33 @@ CompressedStream DescribeStream(vtkCompressedVolume* source)
   return stream;
 }
 
+// The runs of a mask as Buffers.glsl has them.
+std::vector<std::uint32_t> DescribeHidden(const vtkBlockMask& mask)
+{
+  const std::vector<vtkBlockMask::Run>& runs = mask.GetRuns();
+  std::vector<std::uint32_t> words;
+  if (!runs.empty())
+  {
+    words.reserve(1 + 3 * runs.size());
+    words.push_back(static_cast<std::uint32_t>(runs.size()));
+    for (const vtkBlockMask::Run& run : runs)
+    {
+      words.push_back(static_cast<std::uint32_t>(run.First));
+    }
+    for (const vtkBlockMask::Run& run : runs)
+    {
+      words.push_back(static_cast<std::uint32_t>(run.Bits));
+      words.push_back(static_cast<std::uint32_t>(run.Bits >> 32));
+    }
+  }
+  return words;
+}
+
 PipelineVolume DescribeVolume(vtkCompressedVolume* source)
 {
   PipelineVolume volume;
   volume.Values = DescribeStream(source);
+  volume.Hidden = DescribeHidden(source->GetCellsWithoutSurface());
   source->GetDimensions(volume.Samples);
   return volume;
 }
@@ -188,10 +211,12 @@ public:
   vtkWeakPointer<vtkOpenGLRenderWindow> Window;
   const vtkWindow* WindowInUse = nullptr; ///< the same, also while it is being destroyed
 
-  // A volume, compressed; what it was made from, when, and how: image, array, rate, component.
+  // A volume, compressed; what it was made from, when, and how: image, array, rate, component,
+  // whether NaN is hidden.
   struct Compressed
   {
-    using Key = std::tuple<vtkImageData*, vtkMTimeType, vtkDataArray*, vtkMTimeType, double, int>;
+    using Key =
+      std::tuple<vtkImageData*, vtkMTimeType, vtkDataArray*, vtkMTimeType, double, int, bool>;
     vtkSmartPointer<vtkImageData> Image; // the input, or what it was compressed to
     vtkNew<vtkCompressedVolume> Volume;
     Key Source;
@@ -241,7 +266,7 @@ vtkProgressiveIsosurfaceMapper::Internals::~Internals()
   }
 }
 
-// What the stages have room for.
+// What the stages have room for, and isovalues that are numbers.
 bool vtkProgressiveIsosurfaceMapper::Internals::CheckLimits(
   vtkRenderer* renderer, vtkVolume* volume)
 {
@@ -250,6 +275,10 @@ bool vtkProgressiveIsosurfaceMapper::Internals::CheckLimits(
   int shown = 0, lit = 0;
   for (int i = 0; i < values->GetNumberOfContours(); ++i)
   {
+    if (std::isnan(values->GetValue(i)))
+    {
+      return this->Report("cannot show isovalue " + std::to_string(i) + ": it is not a number");
+    }
     shown += property->GetScalarOpacity()->GetValue(values->GetValue(i)) > 0.0 ? 1 : 0;
   }
   vtkCollectionSimpleIterator iterator;
@@ -311,7 +340,9 @@ vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceMapper::Internals::Compres
   {
     single->GetPointData()->SetScalars(array);
   }
-  single->GetCellData()->AddArray(image->GetCellGhostArray()); // of a piece of a volume
+  // of a piece of a volume, or of what is hidden
+  single->GetPointData()->AddArray(image->GetPointGhostArray());
+  single->GetCellData()->AddArray(image->GetCellGhostArray());
   vtkNew<vtkImageZFPCompress> compress;
   compress->SetInputData(single);
   compress->SetInputArrayToProcess(0, 0, 0,
@@ -319,6 +350,7 @@ vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceMapper::Internals::Compres
     vtkDataSetAttributes::SCALARS);
   compress->SetRate(this->Owner->Rate);
   compress->SetComponent(component);
+  compress->SetMaskNonFinite(this->Owner->MaskNonFinite);
   compress->Update();
   return compress->GetOutput();
 }
@@ -339,7 +371,7 @@ bool vtkProgressiveIsosurfaceMapper::Internals::Take(
 {
   // of the mapper's own parameters only these make a plain image another volume
   const Compressed::Key key = { image, image->GetMTime(), array, array ? array->GetMTime() : 0,
-    array ? this->Owner->Rate : 0.0, array ? component : 0 };
+    array ? this->Owner->Rate : 0.0, array ? component : 0, array && this->Owner->MaskNonFinite };
   if (into.Image && key == into.Source)
   {
     return true;
@@ -807,6 +839,7 @@ void vtkProgressiveIsosurfaceMapper::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Rate: " << this->Rate << "\n";
   os << indent << "Component: " << this->Component << "\n";
+  os << indent << "MaskNonFinite: " << (this->MaskNonFinite ? "on\n" : "off\n");
   os << indent << "ColorArrayName: " << (this->ColorArrayName ? this->ColorArrayName : "(none)")
      << "\n";
   os << indent << "ColorComponent: " << this->ColorComponent << "\n";

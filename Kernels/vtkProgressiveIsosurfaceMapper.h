@@ -9,7 +9,8 @@
  * meet are decompressed into a cache, the image shows after every pass, and slots of rays that are
  * done let the others test blocks ahead (Usher, Dyken and Kumar, LDAV 2023). A plain vtkImageData
  * as input is compressed on the fly, so that the mapper drops in for vtkGPUVolumeRayCastMapper in
- * isosurface blend mode. Not for direct volume rendering.
+ * isosurface blend mode. Not for direct volume rendering. There is no surface in cells that are
+ * hidden, nor in those with a hidden point (vtkGhostType arrays, vtkUniformGrid's blanking).
  *
  * The surface is that of the trilinear interpolant of the decompressed values, where values below
  * the isovalue meet values that are not. The isovalues are those of vtkVolumeProperty::
@@ -73,6 +74,16 @@ public:
    */
   vtkSetClampMacro(Component, int, 0, VTK_INT_MAX);
   vtkGetMacro(Component, int);
+  ///@}
+
+  ///@{
+  /**
+   * Whether NaN and infinite samples of plain input are hidden, so that the surface has a hole
+   * there, as vtkImageZFPCompress has it. Default off: they are an error.
+   */
+  vtkSetMacro(MaskNonFinite, bool);
+  vtkGetMacro(MaskNonFinite, bool);
+  vtkBooleanMacro(MaskNonFinite, bool);
   ///@}
 
   ///@{
@@ -270,6 +281,7 @@ protected:
 
   double Rate = 8.0;
   int Component = 0;
+  bool MaskNonFinite = false;
   char* ColorArrayName = nullptr;
   int ColorComponent = 0;
   vtkScalarsToColors* ColorLookupTable = nullptr;

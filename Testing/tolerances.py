@@ -1,6 +1,9 @@
-"""Every tolerance that a test uses, and why it is what it is. Nothing else in Testing/ names one."""
+"""Every tolerance that a test uses, and why it is what it is. Nothing else in Testing/ names one.
 
-from oracle.caster import Slack
+Installed as ``progiso.verification.tolerances``, too.
+"""
+
+from progiso.oracle.caster import Slack
 
 # --- depth against the double-precision caster ----------------------------------------------------------------------------
 
@@ -24,6 +27,27 @@ GRAZING_FRACTION = 0.02
 
 #: ... and on white noise, where every other cell holds a tangent.
 GRAZING_FRACTION_NOISE = 0.10
+
+#: ... and where a view looks at nothing but a singular point of the field: rays through roots of second and third order. Those within
+#: a hundredth of a voxel of it cannot be told from it.
+GRAZING_FRACTION_SINGULAR = 0.03
+
+# --- normals --------------------------------------------------------------------------------------------------------------------------
+
+#: Angle to the gradient of a field whose central differences are its gradient, in degrees: 0.0037 for the packing into
+#: 2 x 16 bits (Cigolle et al. 2014), the rest for float32.
+NORMAL_DEGREES = 0.004
+
+#: In white noise, against central differences in double precision: the same where the gradient is strong, and where it is weak ...
+NORMAL_NOISE_DEGREES = 0.01
+
+#: ... down to this part of the strongest one seen; below, rounding gives the direction.
+WEAK_GRADIENT = 0.01
+
+#: Angle to the radius, times the square of the radius in voxels. The third derivatives of a distance are at most 1.2 / r^2: a central
+#: difference is off by a sixth of them, its interpolation between samples by an eighth for each axis, and r is smaller by up to two
+#: voxels where the differences are taken. In degrees.
+NORMAL_SPHERE_DEGREES = 57.3 * 1.2 * (1 / 6 + 3 / 8) * 1.5
 
 # --- the caster itself -------------------------------------------------------------------------------------------------------
 

@@ -18,6 +18,7 @@ from .data import GENERATORS, SCANS, compressed, fetch
 from .io import COMPRESSED_SUFFIXES, PLAIN_SUFFIXES
 from .progress import progress_bar
 from .surface import SURFACE_SUFFIXES
+from .verification.command import add_verify
 
 _COMPRESSIBLE = ".vti .mha .mhd .nrrd .nii .nii.gz .vtk, name_WxHxD_type.raw"
 _READABLE = ".vti .mha .mhd .nrrd .nii .nii.gz .vtk .zfp, name_WxHxD_type.raw"
@@ -82,6 +83,8 @@ def _parser():
     _add_data(commands)
     bench = _add_command(commands, "bench", None, "measure time, memory and error beside VTK's own")
     add_bench(bench, _size)
+    about = "measure error and time on extreme fields and views, beside a caster in double precision"
+    add_verify(_add_command(commands, "verify", None, about))
     return parser
 
 
@@ -106,8 +109,16 @@ def _add_array(command):
     command.add_argument(
         "--rate", type=float, default=8.0, help="bits per sample, in (0, 32] (default: %(default)g)"
     )
+    _add_choice(command)
+
+
+def _add_choice(command):
     command.add_argument("--array", help="name of the array (default: the active scalars)")
     command.add_argument("--component", type=int, default=0, help="component of the array")
+    command.add_argument(
+        "--mask-nan", action="store_true",
+        help="leave holes where samples are NaN or infinite, which are an error otherwise",
+    )  # fmt: skip
 
 
 def _add_compress(commands):
@@ -152,8 +163,7 @@ def _add_contour(commands):
         "--rate", type=float,
         help="compress a plain image first, to this many bits per sample, in (0, 32]",
     )  # fmt: skip
-    command.add_argument("--array", help="name of the array (default: the active scalars)")
-    command.add_argument("--component", type=int, default=0, help="component of the array")
+    _add_choice(command)
     command.add_argument("--no-normals", action="store_true", help="points and triangles alone")
     command.add_argument("--threads", type=int, default=0, help="0 (default) for one per core")
 
@@ -311,7 +321,13 @@ def _compress(parsed):
     source = getattr(parsed, "in")
     with progress_bar(f"Compressing {source.name}") as progress:
         volume = progiso.compress_file(
-            source, parsed.rate, parsed.array, parsed.component, parsed.threads, progress
+            source,
+            parsed.rate,
+            parsed.array,
+            parsed.component,
+            parsed.threads,
+            progress,
+            parsed.mask_nan,
         )
     _save(volume, parsed.out, parsed.appended)
     if parsed.out.suffix.lower() == ".zfp":
@@ -398,6 +414,7 @@ def _contour(parsed):
             not parsed.no_normals,
             threads=parsed.threads,
             progress=progress,
+            mask_nan=parsed.mask_nan,
         )
     with progress_bar(f"Writing {parsed.out.name}") as progress:
         progiso.save_surface(surface, parsed.out, progress)
@@ -438,6 +455,7 @@ def _render(parsed):
             parsed.memory_budget,
             parsed.detailed,
             parsed.opacity or 1.0,
+            parsed.mask_nan,
         )
     _write_results(result, parsed)
     _print_summary(result)

@@ -6,10 +6,16 @@ from ._vtk import image_data, observe_progress, vtk_errors
 from .vtkProgIsoFilters import vtkCompressedVolume, vtkImageZFPCompress, vtkImageZFPDecompress
 
 _POINTS, _CELLS = 0, 1  # vtkDataObject::FieldAssociations
+_GHOSTS = "vtkGhostType"  # vtkDataSetAttributes::GhostArrayName()
 
 
-def compress(image, rate=8.0, array=None, component=0, threads=0, progress=None):
+def compress(
+    image, rate=8.0, array=None, component=0, threads=0, progress=None, mask_nan=False
+):
     """Compress one array of an image with fixed-rate ZFP.
+
+    What ghost arrays of the image hide (``vtkGhostType``), of points or cells, stays hidden: an
+    isosurface has a hole there.
 
     Parameters
     ----------
@@ -27,6 +33,8 @@ def compress(image, rate=8.0, array=None, component=0, threads=0, progress=None)
         Threads that encode; 0 for one per core.
     progress : callable, optional
         Called with the fraction done, from 0 to 1.
+    mask_nan : bool, default: False
+        Whether NaN and infinite samples are hidden, too; else they are an error.
 
     Returns
     -------
@@ -61,6 +69,7 @@ def compress(image, rate=8.0, array=None, component=0, threads=0, progress=None)
     compressor.SetRate(rate)
     compressor.SetComponent(component)
     compressor.SetNumberOfThreads(threads)
+    compressor.SetMaskNonFinite(bool(mask_nan))
     if array is not None:
         _, of_cells = find_array(image, array)
         compressor.SetInputArrayToProcess(0, 0, 0, _CELLS if of_cells else _POINTS, array)
@@ -96,7 +105,9 @@ def find_array(image, array=None):
     for of_cells, attributes in enumerate((image.GetPointData(), image.GetCellData())):
         arrays = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]
         for found in (attributes.GetScalars(), *arrays):
-            if found is not None and array in (None, found.GetName()):
+            if found is None or (array is None and found.GetName() == _GHOSTS):
+                continue
+            if array in (None, found.GetName()):
                 return found, bool(of_cells)
     data = (image.GetPointData(), image.GetCellData())
     names = [d.GetArrayName(i) for d in data for i in range(d.GetNumberOfArrays())]
@@ -121,7 +132,7 @@ def decompress(image, threads=0, progress=None):
     -------
     vtkmodules.vtkCommonDataModel.vtkImageData
         The same geometry, with the values under the original array's name as point or cell
-        scalars.
+        scalars. Hidden samples are NaN, and marked in a ghost array, as hidden cells are.
 
     Raises
     ------
@@ -146,7 +157,7 @@ def decompress(image, threads=0, progress=None):
     return decompressor.GetOutput()
 
 
-def as_compressed(image, rate=8.0, array=None, component=0, progress=None):
+def as_compressed(image, rate=8.0, array=None, component=0, progress=None, mask_nan=False):
     """Compress an image unless it is a compressed volume already; parameters as in `compress`.
 
     Raises
@@ -155,7 +166,7 @@ def as_compressed(image, rate=8.0, array=None, component=0, progress=None):
         When the image is a compressed volume of another array than the one asked for.
     """
     if not is_compressed(image_data(image)):
-        return compress(image, rate, array, component, progress=progress)
+        return compress(image, rate, array, component, progress=progress, mask_nan=mask_nan)
     held = describe(image)["array"]
     if array not in (None, held):
         raise ValueError(f"the compressed volume has no array {array!r}; it has: {held!r}")

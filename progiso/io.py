@@ -70,7 +70,9 @@ def read(path, dimensions=None, rate=None, progress=None):
     return _checked(image, path)
 
 
-def compress_file(path, rate=8.0, array=None, component=0, threads=0, progress=None):
+def compress_file(
+    path, rate=8.0, array=None, component=0, threads=0, progress=None, mask_nan=False
+):
     """Compress a volume in a file, some slices at a time where the file allows it.
 
     The result is bit for bit that of `compress` on what `read` gives. ``.raw``, ``.nrrd``,
@@ -87,6 +89,8 @@ def compress_file(path, rate=8.0, array=None, component=0, threads=0, progress=N
         As in `compress`.
     progress : callable, optional
         Called with the fraction done, from 0 to 1.
+    mask_nan : bool, default: False
+        Whether NaN and infinite samples are hidden, as in `compress`.
 
     Returns
     -------
@@ -116,11 +120,18 @@ def compress_file(path, rate=8.0, array=None, component=0, threads=0, progress=N
     source = _SLABS.get(suffix_of(path), lambda path: None)(path)
     if source is None:
         image = read(path, progress=_part(progress, 0.0))
-        return compress(image, rate, array, component, threads, _part(progress, 0.5))
+        return compress(image, rate, array, component, threads, _part(progress, 0.5), mask_nan)
     if array not in (None, source.name):
         raise ValueError(f"the image has no array {array!r}; it has: {source.name!r}")
     volume = build(
-        source.vtk_arrays(), source.dimensions, rate, source.name, component, threads, progress
+        source.vtk_arrays(),
+        source.dimensions,
+        rate,
+        source.name,
+        component,
+        threads,
+        progress,
+        mask_nan,
     )
     source.place(volume)
     return volume

@@ -28,6 +28,7 @@ def make_isosurface(
     specular=0.15,
     specular_power=20.0,
     opacity=1.0,
+    mask_nan=False,
 ):
     """Make a prop that shows isosurfaces of a plain or compressed volume.
 
@@ -54,6 +55,9 @@ def make_isosurface(
     opacity : float or sequence of float, default: 1
         One for all isovalues, or one for each: 0 hides a surface, below 1 what lies behind it
         shines through.
+    mask_nan : bool, default: False
+        Whether NaN and infinite samples of a plain image are hidden, so that the surface has a hole
+        there; else they are an error of the mapper.
 
     Returns
     -------
@@ -79,6 +83,7 @@ def make_isosurface(
     mapper = vtkProgressiveIsosurfaceMapper()
     mapper.SetInputData(image_data(image))
     mapper.SetRate(_in_range("rate", rate, 0, 32, above=True))
+    mapper.SetMaskNonFinite(bool(mask_nan))
     mapper.SetLitLikeMeshes(True)  # it takes the place of a contour's mesh
     mapper.SetSpeculationLimit(_speculation_limit(speculation))
     mapper.SetMemoryBudget(int(_in_range("memory_budget", memory_budget, 0, 2**62)))

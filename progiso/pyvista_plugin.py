@@ -35,7 +35,7 @@ class ImageAccessor:
     def __init__(self, image):
         self._image = image
 
-    def compress(self, rate=8.0, scalars=None, component=0, progress=None):
+    def compress(self, rate=8.0, scalars=None, component=0, progress=None, mask_nan=False):
         """Compress one array with fixed-rate ZFP, see :func:`progiso.compress`.
 
         Parameters
@@ -48,6 +48,8 @@ class ImageAccessor:
             Component of that array.
         progress : callable, optional
             Called with the fraction done, from 0 to 1.
+        mask_nan : bool, default: False
+            Whether NaN and infinite samples are hidden; else they are an error.
 
         Returns
         -------
@@ -62,7 +64,11 @@ class ImageAccessor:
         >>> image["height"] = image.points[:, 2]
         >>> volume = image.progiso.compress(rate=4)
         """
-        return pyvista.wrap(compress(self._image, rate, scalars, component, progress=progress))
+        return pyvista.wrap(
+            compress(
+                self._image, rate, scalars, component, progress=progress, mask_nan=mask_nan
+            )
+        )
 
     def decompress(self, progress=None):
         """Decompress a compressed volume into float32, see :func:`progiso.decompress`.
@@ -155,8 +161,8 @@ class IsosurfaceComponent:
             ``scalars``, ``component``, ``color``, ``cmap``, ``clim``, ``log_scale``, ``opacity``,
             ``show_scalar_bar``, ``scalar_bar_args``, ``rate``, ``speculation``,
             ``memory_budget``, ``lighting``, ``ambient``, ``diffuse``, ``specular``,
-            ``specular_power``, ``name``, ``reset_camera``, ``pickable``, ``render`` and
-            ``user_matrix``.
+            ``specular_power``, ``name``, ``reset_camera``, ``pickable``, ``render``,
+            ``user_matrix`` and ``mask_nan``.
 
         Returns
         -------

@@ -55,6 +55,7 @@ def add_isosurface(
     pickable=True,
     render=True,
     user_matrix=None,
+    mask_nan=False,
 ):
     """Add isosurfaces of a volume to a plotter, without extracting a mesh.
 
@@ -116,6 +117,9 @@ def add_isosurface(
         Whether to render at once if the plotter is showing.
     user_matrix : TransformLike, optional
         Transformation of the prop, applied last.
+    mask_nan : bool, default: False
+        Whether NaN and infinite samples of plain data are hidden, so that the surface has a hole
+        there; else they are an error.
 
     Returns
     -------
@@ -147,7 +151,7 @@ def add_isosurface(
 
     >>> prop = progiso.add_isosurface(plotter, image, [10, 20], cmap="plasma", opacity=[1, 0.3])
     """
-    image = _compressed(volume, rate, scalars, component)
+    image = _compressed(volume, rate, scalars, component, mask_nan)
     table = None
     if cmap is not None or (color is None and not isinstance(isovalue, Real)):
         if color is not None:
@@ -194,7 +198,11 @@ def _warn_of_nothing(prop, image):
 def add_isosurface_slider(plotter, volume, rng=None, value=None, **kwargs):
     """Add an isosurface with a slider; see :meth:`IsosurfaceComponent.add_isosurface_slider`."""
     image = _compressed(
-        volume, kwargs.pop("rate", 8.0), kwargs.pop("scalars", None), kwargs.pop("component", 0)
+        volume,
+        kwargs.pop("rate", 8.0),
+        kwargs.pop("scalars", None),
+        kwargs.pop("component", 0),
+        kwargs.pop("mask_nan", False),
     )
     about = describe(image)
     low, high = about["range"] if rng is None else rng
@@ -285,7 +293,7 @@ def _add_scalar_bar(plotter, table, title, arguments):
 # ---- what else is passed
 
 
-def _compressed(volume, rate, scalars, component):
+def _compressed(volume, rate, scalars, component, mask_nan):
     """The compressed volume of whatever was passed."""
     if isinstance(volume, np.ndarray):
         if volume.ndim != 3:
@@ -296,7 +304,7 @@ def _compressed(volume, rate, scalars, component):
         raise TypeError(
             f"expected pyvista.ImageData or an array, got {type(volume).__name__}{hint}"
         )
-    return as_compressed(volume, rate, scalars, component)
+    return as_compressed(volume, rate, scalars, component, mask_nan=mask_nan)
 
 
 def _matrix(transform):

@@ -63,6 +63,7 @@ def render(
     memory_budget=0,
     detailed=False,
     opacity=1.0,
+    mask_nan=False,
 ):
     """Render isosurfaces off screen until the image is complete.
 
@@ -97,6 +98,8 @@ def render(
         which costs time itself.
     opacity : float or sequence of float, default: 1
         One for all isovalues, or one for each; below 1 what lies behind shines through.
+    mask_nan : bool, default: False
+        Whether NaN and infinite samples of a plain image are hidden, as in `compress`.
 
     Returns
     -------
@@ -123,7 +126,7 @@ def render(
         raise ValueError("give either an orbit or a camera, not both")
     if orbit is not None:
         camera = orbit_camera(image_data(image), *orbit)
-    image = as_compressed(image, rate, array, component, progress)
+    image = as_compressed(image, rate, array, component, progress, mask_nan)
     volume = make_isosurface(
         image,
         isovalue,

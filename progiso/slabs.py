@@ -15,7 +15,9 @@ from .vtkProgIsoFilters import vtkCompressedVolumeBuilder
 _WORTHWHILE = 2**23
 
 
-def compress_slabs(slabs, dimensions, rate=8.0, name="scalars", threads=0, progress=None):
+def compress_slabs(
+    slabs, dimensions, rate=8.0, name="scalars", threads=0, progress=None, mask_nan=False
+):
     """Compress a volume that is computed or read a few slices at a time.
 
     What is held in memory is one slab and the compressed stream. The result is bit for bit that of
@@ -39,6 +41,8 @@ def compress_slabs(slabs, dimensions, rate=8.0, name="scalars", threads=0, progr
         Threads that encode, and that call ``slice_at``; 0 for one per core.
     progress : callable, optional
         Called with the fraction done, from 0 to 1.
+    mask_nan : bool, default: False
+        Whether NaN and infinite samples are hidden, as in `compress`.
 
     Returns
     -------
@@ -51,7 +55,8 @@ def compress_slabs(slabs, dimensions, rate=8.0, name="scalars", threads=0, progr
         When a slab's shape does not fit the dimensions.
     RuntimeError
         When the rate or the dimensions are out of range, there are too few or too many slices, or
-        values are NaN, infinite or too small for ZFP; the message says what, and where.
+        values are NaN or infinite and not to be hidden, or too small for ZFP; the message says
+        what, and where.
 
     Examples
     --------
@@ -66,14 +71,15 @@ def compress_slabs(slabs, dimensions, rate=8.0, name="scalars", threads=0, progr
     if callable(slabs):
         slabs = compute_slabs(slabs, dimensions, threads)
     arrays = (_vtk_array(slab) for slab in _whole_layers(slabs, dimensions))
-    return build(arrays, dimensions, rate, name, 0, threads, progress)
+    return build(arrays, dimensions, rate, name, 0, threads, progress, mask_nan)
 
 
-def build(arrays, dimensions, rate, name, component, threads, progress):
+def build(arrays, dimensions, rate, name, component, threads, progress, mask_nan):
     """Compress slabs of whole layers of blocks that are VTK arrays; see `compress_slabs`."""
     builder = vtkCompressedVolumeBuilder()
     builder.SetArrayName(name)
     builder.SetNumberOfThreads(threads)
+    builder.SetMaskNonFinite(bool(mask_nan))
     _require(builder.Start(dimensions, rate), builder)
     for array in arrays:
         _require(builder.AddSlab(array, component), builder)

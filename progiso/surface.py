@@ -31,6 +31,7 @@ def contour(
     scalars=True,
     threads=0,
     progress=None,
+    mask_nan=False,
 ):
     """Extract isosurfaces as triangles.
 
@@ -59,6 +60,8 @@ def contour(
         Threads that decode and contour a compressed volume; 0 for one per core.
     progress : callable, optional
         Called with the fraction done, from 0 to 1, for a compressed volume.
+    mask_nan : bool, default: False
+        Whether NaN and infinite samples are hidden where a plain image is compressed first.
 
     Returns
     -------
@@ -71,7 +74,7 @@ def contour(
         When `image` is no image, or an isovalue is no number.
     ValueError
         When there is no isovalue, one is not finite, there is no such array or component, the image
-        is flat, or the rate is out of range.
+        is flat, the rate is out of range, or missing where NaN is to be hidden.
     RuntimeError
         When a compressed volume is damaged, or a plain image cannot be compressed, as with NaN.
 
@@ -85,8 +88,10 @@ def contour(
     True
     """
     values = _isovalues(isovalues)
+    if mask_nan and rate is None and not is_compressed(image_data(image)):
+        raise ValueError("mask_nan takes a rate: the contour of a plain image hides nothing")
     if rate is not None:
-        image = as_compressed(image, rate, array, component)
+        image = as_compressed(image, rate, array, component, mask_nan=mask_nan)
     if is_compressed(image_data(image)):
         as_compressed(image, array=array)  # refuses another array than the one it has
         extractor = vtkZFPContour()

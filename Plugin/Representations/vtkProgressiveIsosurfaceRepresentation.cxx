@@ -134,6 +134,8 @@ vtkSmartPointer<vtkImageData> WithoutGhosts(vtkImageData* image)
   vtkCompressedVolume::GetOwnExtent(image, extent);
   auto own = vtkSmartPointer<vtkImageData>::New();
   own->CopyStructure(image);
+  own->GetPointData()->Initialize(); // ghost arrays that hide come with the structure
+  own->GetCellData()->Initialize();
   own->SetExtent(extent);
   own->GetFieldData()->PassData(image->GetFieldData());
   return own;
@@ -301,6 +303,7 @@ vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::SelectDraw
 {
   auto selected = vtkSmartPointer<vtkImageData>::New();
   selected->CopyStructure(image);
+  selected->GetPointData()->AddArray(image->GetPointGhostArray());
   selected->GetCellData()->AddArray(image->GetCellGhostArray());
   vtkDataSetAttributes* from = image->GetAttributes(this->DrawnArray.Association);
   vtkDataSetAttributes* to = selected->GetAttributes(this->DrawnArray.Association);
@@ -524,6 +527,12 @@ void vtkProgressiveIsosurfaceRepresentation::SetColor(vtkColorTransferFunction* 
 void vtkProgressiveIsosurfaceRepresentation::SetRate(double bitsPerVoxel)
 {
   this->GetIsosurfaceMapper()->SetRate(bitsPerVoxel);
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetMaskNonFinite(bool on)
+{
+  this->GetIsosurfaceMapper()->SetMaskNonFinite(on);
 }
 
 //------------------------------------------------------------------------------

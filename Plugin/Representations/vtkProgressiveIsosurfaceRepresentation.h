@@ -74,10 +74,11 @@ public:
 
   ///@{
   /**
-   * Forwarded to the mapper: bits per voxel for plain data, speculation on or off, and the
-   * memory budget in mebibytes (0: automatic).
+   * Forwarded to the mapper: bits per voxel for plain data, whether their NaN is hidden,
+   * speculation on or off, and the memory budget in mebibytes (0: automatic).
    */
   void SetRate(double bitsPerVoxel);
+  void SetMaskNonFinite(bool on);
   void SetSpeculation(bool on);
   void SetMemoryBudget(int mebibytes);
   ///@}

@@ -59,10 +59,21 @@ def save_document(document, folder):
     pathlib.Path
     """
     path = Path(folder) / FILE
+    write_json(document, path)
+    return path
+
+
+def write_json(document, path):
+    """Write a document into a file, replacing what was there.
+
+    Parameters
+    ----------
+    document : dict
+    path : str or os.PathLike
+    """
     with atomic_path(path) as temporary:
         text = json.dumps(document, indent=1, allow_nan=False)
         temporary.write_text(text + "\n", encoding="utf-8")
-    return path
 
 
 def load_document(path):

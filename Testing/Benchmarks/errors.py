@@ -20,6 +20,7 @@ import numpy as np
 
 from ..compression import compress
 from ..oracle.caster import Camera, Volume, cast
+from ..verification.agreement import depth_error
 from .fields import compressed, gib, plain, samples
 from .machine import available_bytes
 from .mesh import Mesh, extract
@@ -67,58 +68,6 @@ def measure_errors(field, settings, rates=RATES, distances=SAMPLE_DISTANCES):
     return {**heading, **_Measurement(field, settings).run(rates, distances)}
 
 
-def depth_error(depth, expected, voxels):
-    """Compare depths with the caster's.
-
-    Parameters
-    ----------
-    depth, expected : numpy.ndarray, shape (height, width)
-        Distances along the rays, ``inf`` where there is no hit.
-    voxels : numpy.ndarray, shape (height, width)
-        Voxels that a ray goes in one unit of distance.
-
-    Returns
-    -------
-    dict
-        ``mean``, ``median`` and ``p99`` in voxels over the rays that both hit (None where there
-        are none), and ``wrong``, the fraction of all rays that hit where they should not or the
-        other way round.
-
-    Examples
-    --------
-    >>> depth_error(np.array([[1.5, np.inf]]), np.array([[1.0, 2.0]]), np.full((1, 2), 2.0))
-    {'mean': 1.0, 'median': 1.0, 'p99': 1.0, 'wrong': 0.5}
-    """
-    hit, due = np.isfinite(depth), np.isfinite(expected)
-    both = hit & due
-    off = np.abs(depth[both] - expected[both]) * voxels[both]
-    return {
-        "mean": float(off.mean()) if off.size else None,
-        "median": float(np.median(off)) if off.size else None,
-        "p99": float(np.quantile(off, 0.99)) if off.size else None,
-        "wrong": float(np.mean(hit != due)),
-    }
-
-
-def oracle_volume(image):
-    """An uncompressed volume as the caster takes it.
-
-    Parameters
-    ----------
-    image : vtkmodules.vtkCommonDataModel.vtkImageData
-
-    Returns
-    -------
-    progiso.oracle.caster.Volume
-    """
-    direction = image.GetDirectionMatrix()
-    matrix = [[direction.GetElement(r, c) for c in range(3)] for r in range(3)]
-    start = image.GetExtent()[::2]
-    return Volume.from_geometry(
-        samples(image), image.GetOrigin(), image.GetSpacing(), matrix, start
-    )
-
-
 class _Measurement:
     """One image of one field by all peers."""
 
@@ -155,7 +104,7 @@ class _Measurement:
         view.look(self._camera)
         camera = view.renderer.GetActiveCamera()
         seen, clip = Camera.from_vtk(camera), camera.GetClippingRange()
-        volume = oracle_volume(self._image)
+        volume = Volume.from_image(samples(self._image), self._image)
         return cast(volume, self._isovalue, seen, self._settings.size, clip=clip)
 
     def _time(self, view):

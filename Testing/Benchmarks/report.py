@@ -87,16 +87,32 @@ def _of(record):
     return f"{name}, {pixels(record['size'])}"
 
 
-def _heading(document):
-    machine = document["machine"]
+def describe(machine):
+    """A sentence on what was measured on.
+
+    Parameters
+    ----------
+    machine : dict
+        See `machine.describe_machine`.
+
+    Returns
+    -------
+    str
+    """
     gpu = f" ({machine['gpu']})" if machine["gpu"] else ""
-    lines = [
-        f"# Benchmarks: {machine['gl']}",
-        "",
+    return (
         f"{machine['cpu']}, {machine['cores']} cores, {bytes_(machine['memory_bytes'])}; "
         f"OpenGL {machine['gl_version']}{gpu} through {machine['window']}; VTK {machine['vtk']}, "
         f"its filters on {machine['smp']}; Python {machine['python']}; ProgIso "
-        f"{machine['progiso']}.",
+        f"{machine['progiso']}."
+    )
+
+
+def _heading(document):
+    lines = [
+        f"# Benchmarks: {document['machine']['gl']}",
+        "",
+        describe(document["machine"]),
         "",
         "Times are wall clock from the call of `Render()` to the end of the GPU's work.",
         "",

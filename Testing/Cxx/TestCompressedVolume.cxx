@@ -86,7 +86,7 @@ void TestRejects()
     EXPECT(!ReadWith(name, Values<vtkFloatArray>({ 1.f }), name), name << " of wrong type");
   }
   const vtkTypeInt64 beyond = vtkTypeInt64(1) << 62;
-  EXPECT(!ReadWith("Version", Values<vtkIntArray>({ 2 }), "version 2"), "version");
+  EXPECT(!ReadWith("Version", Values<vtkIntArray>({ 3 }), "version 3"), "version");
   EXPECT(!ReadWith("BlockBits", Values<vtkIntArray>({ 8 }), "BlockBits is 8"), "too few");
   EXPECT(!ReadWith("BlockBits", Values<vtkIntArray>({ 2049 }), "BlockBits is 2049"), "too many");
   EXPECT(

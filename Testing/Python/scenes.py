@@ -7,6 +7,7 @@ import numpy as np
 import tolerances
 from oracle.caster import Camera, cast
 from progiso import depth, statistics, vtkIsosurfaceVolume, vtkProgressiveIsosurfaceMapper
+from progiso.verification.agreement import compare
 from support import reference_volume, vtk_messages
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
@@ -113,9 +114,9 @@ class Scene:
         return vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars()).reshape(height, width, -1)[::-1, :, :3].copy()
 
 
-def least_budget(image, isovalue, camera, size=(160, 120)):
+def least_budget(image, isovalue, camera, size=(160, 120), **settings):
     """Return the least memory budget that a lit scene can work with, as the error says that one byte is too little."""
-    scene = Scene(image, isovalue, camera, size, lit=True, MemoryBudget=1)
+    scene = Scene(image, isovalue, camera, size, lit=True, MemoryBudget=1, **settings)
     with vtk_messages() as messages:
         scene.window.Render()
     return int(re.search(r"at least (\d+) bytes", "".join(messages))[1])
@@ -153,35 +154,15 @@ def check_scene(
 
 
 def check_depth(depth, expected, grazing=tolerances.GRAZING_FRACTION):
-    """Hold a depth image against a `Cast`: the one definition of agreement.
-
-    Every pixel must lie between the first possible and the first certain crossing, and be a hit if one is certain. Where the two
-    are close, which they must be for almost all, it must be the caster's hit within `tolerances.DEPTH_VOXELS`.
-    """
+    """Hold a depth image against a `Cast`, see `progiso.verification.agreement`; not too many rays may graze."""
     assert depth.dtype == np.float32 and depth.shape == expected.depth.shape
-    allowed = tolerances.DEPTH_VOXELS / expected.voxels + tolerances.DEPTH_RELATIVE * np.where(
-        np.isfinite(depth), depth, 0
-    )
-    possible = (depth >= expected.early - allowed) & (depth <= expected.late + allowed)
-    _report("hits where none is possible, or misses where one is certain", ~possible, depth, expected)
-
-    finite = np.isfinite(expected.late)
-    width = np.subtract(expected.late, expected.early, out=np.zeros_like(expected.late), where=finite)
-    close = finite & (width * expected.voxels <= tolerances.CLEAR_VOXELS)
-    off = np.abs(np.subtract(depth, expected.depth, out=np.zeros_like(expected.depth), where=close)) > allowed
-    _report("hits off by more than is allowed", off, depth, expected)
-
-    can_hit = np.isfinite(expected.early)
-    share = np.mean(~close[can_hit]) if can_hit.any() else 0.0
-    assert share <= grazing, f"{share:.2%} of the rays that can hit graze: too many to judge by"
-
-
-def _report(what, wrong, depth, expected):
+    found = compare(depth, expected)
+    wrong = found.wrong
     if wrong.any():
         lines = [
             f"  row {r} column {c}: {depth[r, c]:.9g}, expected {expected.depth[r, c]:.9g}"
-            f" ({expected.early[r, c]:.9g} to {expected.late[r, c]:.9g}),"
-            f" off by {(depth[r, c] - expected.depth[r, c]) * expected.voxels[r, c]:.3g} voxels"
+            f" ({expected.early[r, c]:.9g} to {expected.late[r, c]:.9g}), off by {found.error[r, c]:.3g} voxels"
             for r, c in np.argwhere(wrong)[:8]
         ]
-        raise AssertionError(f"{wrong.sum()} of {wrong.size} pixels: {what}\n" + "\n".join(lines))
+        raise AssertionError(f"{wrong.sum()} of {wrong.size} pixels are off by more than is allowed\n" + "\n".join(lines))
+    assert found.grazing <= grazing, f"{found.grazing:.2%} of the rays that can hit graze: too many to judge by"

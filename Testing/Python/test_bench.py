@@ -14,7 +14,6 @@ import tolerances
 from oracle.caster import Camera, Volume, cast
 from progiso.benchmarks import goals
 from progiso.benchmarks.document import load_document, merge
-from progiso.benchmarks.errors import depth_error
 from progiso.benchmarks.explicit import BlockRanges
 from progiso.benchmarks.fields import parse_field
 from progiso.benchmarks.literature import GPU
@@ -23,6 +22,7 @@ from progiso.benchmarks.report import markdown
 from progiso.benchmarks.settings import PEERS, Settings
 from progiso.benchmarks.view import opposite, turned
 from progiso.benchmarks.volume_mapper import VolumeMapper
+from progiso.verification.agreement import depth_error
 from support import blobs, make_image, noise
 from test_cli import call
 

@@ -34,6 +34,7 @@ def run(name, build, folder):  # noqa: F811
         "trace",
         "contour",
         "color_by",
+        "hidden",
     ],
 )
 def test_script(name, build, tmp_path):  # noqa: F811

@@ -67,6 +67,14 @@ class Volume:
         matrix[:3, 3] = np.asarray(origin, float) + matrix[:3, :3] @ (np.asarray(extent_start, float) + shift)
         return cls(np.asarray(values), np.asarray(user, float) @ matrix)
 
+    @classmethod
+    def from_image(cls, values, image, user=np.eye(4), shift=0.0):
+        """Place `values` where a ``vtkImageData`` lies; `user` and `shift` as in `from_geometry`."""
+        direction = image.GetDirectionMatrix()
+        matrix = [[direction.GetElement(r, c) for c in range(3)] for r in range(3)]
+        start = image.GetExtent()[::2]
+        return cls.from_geometry(values, image.GetOrigin(), image.GetSpacing(), matrix, start, user, shift)
+
 
 @dataclass(frozen=True)
 class Camera:
@@ -94,13 +102,17 @@ class Camera:
         """Unit vector across the image plane."""
         return _unit(np.subtract(self.focal_point, self.position, dtype=float))
 
-    def rays(self, size):
-        """Return origins and unit directions, each [height * width, 3], for an image of `size` (width, height)."""
+    def rays(self, size, pixels=None):
+        """Return origins and unit directions, each [height * width, 3], for an image of `size` (width, height).
+
+        `pixels`, counted through the rows from the top, has only some of them made.
+        """
         width, height = size
         position, forward = np.asarray(self.position, float), self.forward
         right = _unit(np.cross(forward, np.asarray(self.view_up, float)))
         up = np.cross(right, forward)
-        x, y = np.meshgrid((np.arange(width) + 0.5) / width * 2 - 1, 1 - (np.arange(height) + 0.5) / height * 2)
+        row, column = np.divmod(np.arange(width * height) if pixels is None else np.asarray(pixels), width)
+        x, y = (column + 0.5) / width * 2 - 1, 1 - (row + 0.5) / height * 2
         offset = x.reshape(-1, 1) * (width / height) * right + y.reshape(-1, 1) * up
         if self.parallel_scale is not None:
             return position + self.parallel_scale * offset, np.broadcast_to(forward, offset.shape)
@@ -128,8 +140,8 @@ class Cast:
     voxels: np.ndarray
 
 
-def cast(volume, isovalue, camera, size, slack=Slack(), clip=(0.0, np.inf)):
-    """Cast one ray through the centre of each of the image's pixels.
+def cast(volume, isovalue, camera, size, slack=Slack(), clip=(0.0, np.inf), pixels=None):
+    """Cast one ray through the centre of each of the image's pixels, or of some.
 
     Parameters
     ----------
@@ -141,15 +153,17 @@ def cast(volume, isovalue, camera, size, slack=Slack(), clip=(0.0, np.inf)):
     slack : Slack
     clip : (float, float)
         distances of the clipping planes, across the view, between which the rays go.
+    pixels : array of int, optional
+        counted through the rows from the top: the only ones that are cast; the result is a list of them.
 
     Returns
     -------
     Cast
     """
-    origins, directions = camera.rays(size)
+    origins, directions = camera.rays(size, pixels)
     across = directions @ camera.forward
     result = cast_rays(volume, isovalue, origins, directions, slack, clip[0] / across, clip[1] / across)
-    shape = (size[1], size[0])
+    shape = (size[1], size[0]) if pixels is None else (-1,)
     return Cast(*(getattr(result, name).reshape(shape) for name in ("depth", "early", "late", "voxels")))
 
 

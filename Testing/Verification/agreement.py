@@ -1,0 +1,123 @@
+"""How far depths are off the caster's: the one definition of agreement, for tests and tables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import tolerances
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """Depths held against a `Cast`; every array has the shape of the image.
+
+    Attributes
+    ----------
+    error : numpy.ndarray
+        Voxels along the ray: off the caster's hit where the slack leaves no room, else outside
+        what lies between the first possible and the first certain crossing. Infinite at a hit
+        where none is possible, and at a miss where one is certain.
+    allowed : numpy.ndarray
+        What is granted, in voxels: `tolerances.DEPTH_VOXELS`, and the rounding of a float32 depth.
+    grazing : float
+        Part of the rays that can hit for which rounding decides where, or whether.
+    differing : float
+        Part of them for which it has decided otherwise than in the caster's own arithmetic.
+    hits : int
+    """
+
+    error: np.ndarray
+    allowed: np.ndarray
+    grazing: float
+    differing: float
+    hits: int
+
+    @property
+    def wrong(self):
+        """Where depths are off by more than is allowed."""
+        return ~(self.error <= self.allowed)
+
+    @property
+    def worst(self):
+        """Error and what is allowed, of the ray that comes closest to it or is farthest beyond."""
+        at = np.argmax(self.error / self.allowed)
+        return float(self.error.flat[at]), float(self.allowed.flat[at])
+
+
+def compare(depth, expected):
+    """Hold depths against the caster's.
+
+    A depth must lie between the first possible and the first certain crossing, and be a hit if one
+    is certain. Where the two are close it must be the caster's hit.
+
+    Parameters
+    ----------
+    depth : numpy.ndarray
+        Distances along the rays, ``inf`` where there is no hit.
+    expected : progiso.oracle.caster.Cast
+        Of the same rays, with `tolerances.SLACK`.
+
+    Returns
+    -------
+    Agreement
+    """
+    depth = np.asarray(depth, float)
+    certain, possible, hit = map(np.isfinite, (expected.late, expected.early, depth))
+    before = np.where(hit, _difference(expected.early, depth, hit), 0.0)
+    behind = np.where(certain, _difference(depth, expected.late, certain), 0.0)
+    room = _difference(expected.late, expected.early, certain)
+    close = certain & (room * expected.voxels <= tolerances.CLEAR_VOXELS)
+    off = np.abs(_difference(depth, expected.depth, close))
+    error = np.maximum(np.maximum(before, behind), np.maximum(off, 0.0)) * expected.voxels
+    rounding = tolerances.DEPTH_RELATIVE * np.where(hit, depth, 0.0) * expected.voxels
+    allowed = tolerances.DEPTH_VOXELS + rounding
+    both = hit & np.isfinite(expected.depth)
+    same = (hit == np.isfinite(expected.depth)) & (
+        np.abs(_difference(depth, expected.depth, both)) * expected.voxels <= allowed
+    )
+    return Agreement(error, allowed, _part(~close, possible), _part(~same, possible), int(hit.sum()))
+
+
+def _part(chosen, among):
+    """Part of some rays that is chosen; 0 of none."""
+    return float(np.mean(chosen[among])) if among.any() else 0.0
+
+
+def _difference(a, b, where):
+    """a - b, and zero elsewhere: infinities need not meet there."""
+    return np.subtract(a, b, out=np.zeros(np.shape(a)), where=where)
+
+
+def depth_error(depth, expected, voxels):
+    """Compare depths with the caster's.
+
+    Parameters
+    ----------
+    depth, expected : numpy.ndarray, shape (height, width)
+        Distances along the rays, ``inf`` where there is no hit.
+    voxels : numpy.ndarray, shape (height, width)
+        Voxels that a ray goes in one unit of distance.
+
+    Returns
+    -------
+    dict
+        ``mean``, ``median`` and ``p99`` in voxels over the rays that both hit (None where there
+        are none), and ``wrong``, the fraction of all rays that hit where they should not or the
+        other way round.
+
+    Examples
+    --------
+    >>> depth_error(np.array([[1.5, np.inf]]), np.array([[1.0, 2.0]]), np.full((1, 2), 2.0))
+    {'mean': 1.0, 'median': 1.0, 'p99': 1.0, 'wrong': 0.5}
+    """
+    hit, due = np.isfinite(depth), np.isfinite(expected)
+    both = hit & due
+    off = np.abs(depth[both] - expected[both]) * voxels[both]
+    return {
+        "mean": float(off.mean()) if off.size else None,
+        "median": float(np.median(off)) if off.size else None,
+        "p99": float(np.quantile(off, 0.99)) if off.size else None,
+        "wrong": float(np.mean(hit != due)),
+    }

@@ -1,0 +1,191 @@
+"""Images of a compressed volume, timed, and held against the caster."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from vtkmodules.vtkCommonMath import vtkMatrix4x4
+
+from ..benchmarks.ours import Isosurface
+from ..benchmarks.view import opposite
+from ..camera import Camera, orbit_camera
+from ..compression import compress, decompress
+from ..oracle import caster
+from . import tolerances
+from .agreement import compare
+from .case import Outcome, worst_of
+from .fields import make_image, values_of
+
+#: From this part of grazing rays on it is told, and how many of all rays have not the caster's own hit.
+_TOLD = 1e-3
+
+#: Bits a sample where a case is not of a rate: what is decoded is the field's to the last places.
+RATE = 32
+
+
+def compressed(values, rate=RATE, **geometry):
+    """A compressed volume of values [z, y, x]; `geometry` as `fields.make_image` has it."""
+    return compress(make_image(values, **geometry), rate)
+
+
+def decoded(image, user=None):
+    """What libzfp decodes of a compressed volume, as the caster takes it."""
+    plain = decompress(image)
+    cells = plain.GetPointData().GetScalars() is None
+    matrix = np.eye(4) if user is None else np.asarray(user, float)
+    return caster.Volume.from_image(values_of(plain), plain, matrix, 0.5 if cells else 0.0)
+
+
+class Picture(Isosurface):
+    """A compressed volume in a view whose clipping planes may be given.
+
+    Parameters
+    ----------
+    image : vtkmodules.vtkCommonDataModel.vtkImageData
+        A compressed volume.
+    isovalue : float
+    size : tuple of int
+        Width and height in pixels.
+    user : 4x4 array, optional
+        The prop's matrix.
+    clip : tuple of float, optional
+        Distances of the clipping planes; by default they stand around the volume.
+    settings
+        Of `benchmarks.ours.Isosurface`.
+    """
+
+    def __init__(self, image, isovalue, size, user=None, clip=None, **settings):
+        super().__init__(image, isovalue, size, **settings)
+        self._clip = clip
+        if user is not None:
+            matrix = vtkMatrix4x4()
+            matrix.DeepCopy(np.asarray(user, float).ravel())
+            self.prop.SetUserMatrix(matrix)
+
+    def look(self, camera):
+        super().look(camera)
+        if self._clip is not None:
+            self.renderer.GetActiveCamera().SetClippingRange(self._clip)
+
+    def time(self, camera, repeat):
+        """Least milliseconds of an image, another one having been rendered before each.
+
+        With `repeat` 0 those of the first image.
+        """
+        first = self.warm_up(camera) if repeat > 0 else self.render_from(camera)
+        times = [] if repeat > 0 else [first]
+        for _ in range(repeat):
+            self.render_from(opposite(camera))
+            times.append(self.render_from(camera))
+        return min(times)
+
+    def rays(self):
+        """Camera and clipping range as the caster takes them."""
+        camera = self.renderer.GetActiveCamera()
+        return caster.Camera.from_vtk(camera), camera.GetClippingRange()
+
+
+def check_depths(
+    settings,
+    image,
+    isovalue,
+    camera=None,
+    size=None,
+    grazing=tolerances.GRAZING_FRACTION,
+    hits=True,
+    user=None,
+    note="",
+    volume=None,
+    sample=None,
+    **options,
+):
+    """Render an image, time it, and hold its depths against the caster.
+
+    Parameters
+    ----------
+    settings : case.Settings
+    image : vtkmodules.vtkCommonDataModel.vtkImageData
+        A compressed volume.
+    isovalue : float
+    camera : progiso.Camera, optional
+        By default one of the orbit's.
+    size : tuple of int, optional
+        Of the image, in place of the settings'.
+    grazing : float
+        Part of the rays that may graze; with more there is too little to judge by.
+    hits : bool
+        Whether there have to be any; a case of none has to have none.
+    user : 4x4 array, optional
+        The prop's matrix.
+    note : str
+    volume : progiso.oracle.caster.Volume, optional
+        What the caster casts; by default what libzfp decodes.
+    sample : int, optional
+        How many rays of the image are held against the caster's, at random; by default all.
+    options
+        Of `Picture`.
+
+    Returns
+    -------
+    case.Outcome
+    """
+    size = size or settings.size
+    view = Picture(image, isovalue, size, user=user, **options)
+    try:
+        milliseconds = view.time(camera or orbit_camera(view.prop, 1, 4), settings.repeat)
+        depth, (eye, clip) = view.depth(), view.rays()
+        complete, errors = view.converged(), view.mapper.GetNumberOfGLErrors()
+    finally:
+        view.close()
+    volume = volume or decoded(image, user)
+    pixels = None
+    if sample is not None:
+        pixels = np.sort(np.random.default_rng(1).integers(0, depth.size, sample))
+        depth = depth.ravel()[pixels]
+    expected = caster.cast(volume, isovalue, eye, size, tolerances.SLACK, clip, pixels)
+    found = compare(depth, expected)
+    defects = (
+        "" if complete else "the image is not complete",
+        f"{errors} OpenGL errors" if errors else "",
+        f"{found.grazing:.1%} of the rays graze" if found.grazing > grazing else "",
+        _wrong_hits(found),
+        "" if (found.hits > 0) == hits else f"{found.hits} hits",
+    )
+    error, limit = found.worst
+    about = f"{found.hits} hits"
+    if found.grazing >= _TOLD:
+        about += f", {found.grazing:.1%} of the rays graze and {found.differing:.2%} differ"
+    return Outcome(
+        error,
+        limit,
+        milliseconds,
+        note="; ".join(filter(None, (note, about))),
+        defect="; ".join(filter(None, defects)),
+    )
+
+
+def _wrong_hits(found):
+    count = int(np.isinf(found.error).sum())
+    return f"{count} rays hit where they cannot, or miss what is certain" if count else ""
+
+
+def check_views(settings, image, isovalues, cameras=(None,), **options):
+    """`check_depths` of all isovalues from all cameras: the worst of them."""
+    options.setdefault("volume", decoded(image, options.get("user")))
+    return worst_of(
+        check_depths(settings, image, isovalue, camera, **options)
+        for isovalue in isovalues
+        for camera in cameras
+    )
+
+
+def parallel(camera, scale):
+    """A camera in parallel projection, its image twice `scale` high."""
+    return replace(camera, parallel=True, parallel_scale=float(scale))
+
+
+def looking(position, focal_point, view_up=(0.0, 1.0, 0.0), view_angle=30.0):
+    """A `progiso.Camera` of numbers of any kind."""
+    vectors = (tuple(map(float, v)) for v in (position, focal_point, view_up))
+    return Camera(*vectors, float(view_angle))
