@@ -176,7 +176,7 @@ def run(program, file=None, **environment):
 def test_memory_that_is_really_not_there():
     """64 MiB of decoded blocks do not fit into what the process may have; they do as soon as it may have more."""
     if "vtkOSOpenGLRenderWindow" != vtkRenderWindow().GetClassName():
-        pytest.skip("the memory of a GPU is not this process's; see Testing/gpu-faults")
+        pytest.skip("the memory of a GPU is not this process's; see Testing/gpu_faults.py")
     printed = run(REAL, PROGISO_GL_DEBUG="0")
     assert re.fullmatch(r"ERR.*the GPU has no room for \d+ bytes of cache_values: lower.*", printed.strip(), re.DOTALL), printed
 
