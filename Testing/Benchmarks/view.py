@@ -67,7 +67,7 @@ class View:
         self.look(camera)
         return self.render()
 
-    def warm_up(self, camera):
+    def warm_up(self, camera, seconds=WARM_UP):
         """Render from a camera, for as long as a GPU takes to speed up.
 
         While the CPU prepares something a GPU falls asleep, and runs at a third of its speed for
@@ -76,6 +76,8 @@ class View:
         Parameters
         ----------
         camera : progiso.Camera
+        seconds : float
+            How long the GPU is kept busy.
 
         Returns
         -------
@@ -85,7 +87,7 @@ class View:
         start = perf_counter()
         first = self.render_from(camera)
         software = "llvmpipe" in self.window.ReportCapabilities()
-        while not software and perf_counter() - start < WARM_UP:
+        while not software and perf_counter() - start < seconds:
             self.render()
         return first
 

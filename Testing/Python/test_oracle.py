@@ -38,6 +38,40 @@ def plain(values):
     return Volume(np.asarray(values), np.eye(4))
 
 
+HIDDEN_CELLS = {  # along x, of nine; and where the first surface behind x = 0 is seen, and behind x = 4 and 8.5
+    "none": ((), (3.5, 7.5, np.inf)),
+    "the first surface's": ((3,), (7.5, 7.5, np.inf)),
+    "both surfaces'": ((3, 7), (np.inf, np.inf, np.inf)),
+    "where rays begin": ((0, 4, 8), (3.5, 7.5, np.inf)),
+    "up to a surface's": ((0, 1, 2, 4, 5, 6), (3.5, 7.5, np.inf)),
+}
+
+
+@pytest.mark.parametrize("case", HIDDEN_CELLS)
+def test_hidden_cells(case):
+    """There is no surface in them, and none where a ray comes out of them on another side than it went in."""
+    columns, depths = HIDDEN_CELLS[case]
+    x = np.arange(10.0)
+    values = np.broadcast_to(2 - np.abs(x - 5.5), (6, 5, 10)).copy()
+    hidden = np.zeros((5, 4, 9), bool)
+    hidden[:, :, list(columns)] = True
+    values[:, :, [i for i in range(1, 9) if hidden[0, 0, i - 1] and hidden[0, 0, i]]] = np.nan
+    origins = np.array([[-3.0, 2.2, 1.7], [4.2, 2.2, 1.7], [8.5, 2.2, 1.7]])
+    found = cast_rays(Volume(values, np.eye(4), hidden), 0.0, origins, np.eye(3)[[0, 0, 0]], tolerances.SLACK)
+    assert found.depth + origins[:, 0] == pytest.approx(depths, abs=tolerances.ORACLE_EXACT)
+    assert (found.early <= found.depth).all() and (found.depth <= found.late).all()
+    assert found.late + origins[:, 0] == pytest.approx(depths, abs=tolerances.CLEAR_VOXELS)
+
+
+def test_hidden_everything_or_nothing():
+    values = np.random.default_rng(5).normal(size=(6, 7, 8))
+    origins, directions = random_rays(np.random.default_rng(6), values.shape, 300)
+    whole = cast_rays(plain(values), 0.1, origins, directions).depth
+    nothing, everything = (Volume(values, np.eye(4), np.full((5, 6, 7), hidden)) for hidden in (False, True))
+    assert np.isfinite(whole).any() and np.array_equal(cast_rays(nothing, 0.1, origins, directions).depth, whole)
+    assert not np.isfinite(cast_rays(everything, 0.1, origins, directions).depth).any()
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_first_root_by_dense_sampling(seed):
     """Each hit is a root with a change of side, and no side changes before it."""

@@ -17,6 +17,9 @@ from .agreement import compare
 from .case import Outcome, worst_of
 from .fields import make_image, values_of
 
+#: Seconds that a GPU is kept busy before an image's time counts; it has been busy not long ago.
+_WARM_UP = 0.3
+
 #: From this part of grazing rays on it is told, and how many of all rays have not the caster's own hit.
 _TOLD = 1e-3
 
@@ -73,7 +76,7 @@ class Picture(Isosurface):
 
         With `repeat` 0 those of the first image.
         """
-        first = self.warm_up(camera) if repeat > 0 else self.render_from(camera)
+        first = self.warm_up(camera, _WARM_UP if repeat > 0 else 0.0)
         times = [] if repeat > 0 else [first]
         for _ in range(repeat):
             self.render_from(opposite(camera))

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from time import perf_counter
 
 import numpy as np
 
+from ..compression import compress
 from ..isosurface import make_isosurface
 from ..oracle import caster
 from . import tolerances
 from .case import Case, Outcome, worst_of
-from .fields import blobs, noise
-from .scene import Picture, check_depths, check_views, compressed
+from .fields import blobs, coordinates, make_image, noise
+from .scene import RATE, Picture, check_depths, check_views, compressed, decoded
 
 _SHAPE = (24, 20, 28)
 _NOISE = tolerances.GRAZING_FRACTION_NOISE
@@ -126,6 +128,21 @@ def _no_isovalue_later(settings):
         view.close()
 
 
+def _hidden(cached, settings):
+    """NaN where there is to be a hole, in a ball and here and there: only cells of numbers have a surface."""
+    shape = (26, 31, 29)
+    place = np.stack(coordinates(shape), axis=-1)
+    hole = np.linalg.norm(place - (20.0, 12.0, 11.0), axis=-1) < 8
+    hole |= np.random.default_rng(19).random(shape) < 0.02
+    values = np.where(hole, np.nan, blobs(shape, 3)).astype(np.float32)
+    image = compress(make_image(values), RATE, mask_nan=True)
+    cells = np.zeros(np.array(shape) - 1, bool)
+    for corner in np.ndindex(2, 2, 2):
+        cells |= hole[tuple(slice(c, n - 1 + c) for c, n in zip(corner, shape))]
+    volume = replace(decoded(image), hidden=cells)
+    return check_views(settings, image, (0.15, -0.2), volume=volume, cached=cached)
+
+
 CASES = (
     Case("values of 1e-28", partial(_scaled, 1e-28)),
     Case("values of 1e30", partial(_scaled, 1e30)),
@@ -152,4 +169,6 @@ CASES = (
     Case("isovalue NaN", _no_isovalue),
     Case("isovalue NaN, at the property", _no_isovalue_later),
     Case("values NaN and infinite", _not_finite),
+    Case("values NaN, hidden", partial(_hidden, False)),
+    Case("values NaN, hidden, pass by pass", partial(_hidden, True), quick=False),
 )

@@ -45,10 +45,13 @@ class Volume:
         array [z, y, x] of the samples.
     index_to_world
         4x4 matrix that takes an array index (x, y, z) to world coordinates.
+    hidden
+        array [z, y, x] of booleans, one a cell: where there is no surface; samples that only such cells have need not be finite.
     """
 
     values: np.ndarray
     index_to_world: np.ndarray
+    hidden: np.ndarray = None
 
     @classmethod
     def from_geometry(
@@ -169,7 +172,7 @@ def cast(volume, isovalue, camera, size, slack=Slack(), clip=(0.0, np.inf), pixe
 
 def cast_rays(volume, isovalue, origins, directions, slack=Slack(), begin=0.0, end=np.inf):
     """Cast the rays ``origins + t * directions``, t from `begin` to `end`, with unit directions; see `cast`."""
-    grid = _Grid(volume.values, float(isovalue), slack)
+    grid = _Grid(volume, float(isovalue), slack)
     to_index = np.linalg.inv(volume.index_to_world[:3, :3])
     starts = (np.asarray(origins, float) - volume.index_to_world[:3, 3]) @ to_index.T
     steps = np.asarray(directions, float) @ to_index.T
@@ -222,7 +225,7 @@ def cast_all(volume, isovalues, camera, size, clip=(0.0, np.inf)):
     rays = np.flatnonzero(enter <= leave)
     parts = []
     for number, isovalue in enumerate(isovalues):
-        grid = _Grid(volume.values, float(isovalue), Slack())
+        grid = _Grid(volume, float(isovalue), Slack())
         found = _FullWalk(grid, start[:, rays], step[:, rays], enter[rays], leave[rays]).run()
         parts.append((rays[found[0]], found[1], np.full(len(found[0]), number)))
     ray, depth, surface = (np.concatenate(part) for part in zip(*parts))
@@ -243,7 +246,10 @@ class _Grid:
     What else a ray has to know of a cell is made when it gets there, so that a volume takes little more memory than its samples.
     """
 
-    def __init__(self, values, isovalue, slack):
+    def __init__(self, volume, isovalue, slack):
+        values = volume.values
+        if volume.hidden is not None:
+            values = np.where(_touched(~volume.hidden), values, 0)
         if values.ndim != 3 or min(values.shape) < 2:
             raise ValueError(f"at least two samples are needed along each axis, got shape {values.shape}")
         if not all(np.isfinite(values[z]).all() for z in range(len(values))):
@@ -259,6 +265,10 @@ class _Grid:
         for z in range(0, len(values) - 1, _SLAB):
             cells = self._matters(values[z : z + _SLAB + 1])
             matters[z : z + len(cells), :-1, :-1] = cells
+        self.hidden = None
+        if volume.hidden is not None:
+            matters[:-1, :-1, :-1][volume.hidden] = 0
+            self.hidden = np.pad(volume.hidden, ((0, 1),) * 3).ravel()
         self.matters = matters.ravel()
 
     def _matters(self, values):
@@ -297,6 +307,14 @@ _CORNERS = [f"{i:03b}" for i in range(8)]
 
 #: Layers of cells that are looked at together while a volume is prepared.
 _SLAB = 16
+
+
+def _touched(cells):
+    """Mark the samples that are corners of marked cells."""
+    samples = np.zeros(np.array(cells.shape) + 1, bool)
+    for corner in np.ndindex(2, 2, 2):
+        samples[tuple(slice(c, c + n) for c, n in zip(corner, cells.shape))] |= cells
+    return samples
 
 
 def _cell_extremes(samples, pick):
@@ -363,15 +381,26 @@ class _Walk:
         with np.errstate(divide="ignore", invalid="ignore"):
             self.inverse = 1.0 / step
             self.far = np.where(step == 0, np.inf, (self.plane - self.start) / step)
-        self.side = self._first_side()
+        self.side = np.zeros(len(enter))
+        self.unsure = np.zeros(len(enter), bool)
+        self._find_sides(np.arange(len(enter)))
 
-    def _first_side(self):
-        """Return +1 for rays that start inside and -1 outside; where rounding decides, any outcome is possible."""
-        cells, error = self.grid.cells(self.index)
-        excess = _along(cells, self.start - self._corner(), np.zeros_like(self.start))[0]
-        self.unsure = (np.abs(excess) <= error) & (error > 0)
-        self.hits[0, self.unsure] = self.enter[self.unsure]
-        return np.where(excess >= 0, 1.0, -1.0)
+    def _find_sides(self, rays):
+        """Set +1 for rays that are inside where they are and -1 outside; where rounding decides, any outcome is possible.
+
+        0 where that is hidden: it is found where the ray comes out.
+        """
+        if self.grid.hidden is not None:
+            hidden = self.grid.hidden[self.index[rays]]
+            self.side[rays[hidden]] = 0
+            rays = rays[~hidden & (self.side[rays] == 0)]
+        cells, error = self.grid.cells(self.index[rays])
+        place = self.start[:, rays] + self.near[rays] * self.step[:, rays] - self._corner(rays)
+        excess = _along(cells, place, np.zeros_like(place))[0]
+        unsure = rays[(np.abs(excess) <= error) & (error > 0)]
+        self.unsure[unsure] = True
+        self.hits[0, unsure] = np.minimum(self.hits[0, unsure], self.enter[unsure] + self.near[unsure])
+        self.side[rays] = np.where(excess >= 0, 1.0, -1.0)
 
     def _corner(self, rays=slice(None)):
         index, (_, sy, sz) = self.index[rays], self.grid.strides
@@ -380,6 +409,8 @@ class _Walk:
     def run(self):
         rays = np.arange(len(self.enter))
         while len(rays):
+            if self.grid.hidden is not None:
+                self._find_sides(rays)
             axis = np.argmin(self.far[:, rays], axis=0)
             far = np.maximum(np.minimum(self.far[axis, rays], self.leave[rays]), self.near[rays])
             bit = np.where(self.side[rays] > 0, 1, 2)
