@@ -401,7 +401,16 @@ std::string vtkCompressedVolume::CheckGeometry(vtkImageData* image)
       return message.str();
     }
   }
-  return Contains(this->Extent, image->GetExtent())
+  const int* own = image->GetExtent();
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (own[2 * axis + 1] < own[2 * axis] + (cells ? 1 : 0))
+    {
+      message << "the image has no " << (cells ? "cells" : "points") << " along axis " << axis;
+      return message.str();
+    }
+  }
+  return Contains(this->Extent, own)
     ? std::string()
     : "its stream is that of another piece (one compressed volume cannot be put together from "
       "several)";

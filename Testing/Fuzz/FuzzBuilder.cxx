@@ -77,9 +77,12 @@ void AddSlab(vtkCompressedVolumeBuilder* builder, Taken& taken, Bytes& bytes)
     taken.Samples = vtkSmartPointer<vtkDataArray>::Take(slab->NewInstance());
     taken.Component = component;
   }
+  const int stride = slab->GetNumberOfComponents();
   for (vtkIdType i = 0; i < slab->GetNumberOfTuples(); ++i)
   {
-    taken.Samples->InsertNextTuple1(slab->GetComponent(i, component));
+    // exact, where a double is not
+    const vtkVariant value = slab->GetVariantValue(stride * i + component);
+    taken.Samples->InsertVariantValue(taken.Samples->GetNumberOfValues(), value);
   }
 }
 
