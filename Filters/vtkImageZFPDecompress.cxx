@@ -54,6 +54,19 @@ void ForEachHidden(
 }
 
 //------------------------------------------------------------------------------
+// The input's ghost array comes along with its structure: only of as many points, or cells, may it
+// be added to.
+void KeepGhosts(vtkDataSetAttributes* attributes, vtkIdType number)
+{
+  const char* const name = vtkDataSetAttributes::GhostArrayName();
+  vtkAbstractArray* const ghosts = attributes->GetAbstractArray(name);
+  if (ghosts && (ghosts->GetNumberOfTuples() != number || ghosts->GetNumberOfComponents() != 1))
+  {
+    attributes->RemoveArray(name);
+  }
+}
+
+//------------------------------------------------------------------------------
 // Hidden samples become NaN, and the ghost arrays tell of them and of hidden cells.
 void Hide(vtkCompressedVolume* volume, vtkDataArray* samples, vtkImageData* output)
 {
@@ -157,6 +170,8 @@ int vtkImageZFPDecompress::RequestData(
   input->GetExtent(own);
   volume->Crop(own);
   output->SetExtent(volume->GetExtent());
+  KeepGhosts(output->GetPointData(), output->GetNumberOfPoints());
+  KeepGhosts(output->GetCellData(), output->GetNumberOfCells());
   if (!volume->Covers(input))
   {
     output->GenerateGhostArray(own); // the samples around a piece
