@@ -660,6 +660,49 @@ def _budget_cells(point):
     return [*sizes, number(point["passes"]), *times]
 
 
+# ---- long use
+
+
+def _soak(report, records):
+    names = {
+        "rss": "main memory of the process",
+        "gpu": "GPU memory in use (nvidia-smi)",
+        "mapper": "GPU memory, as the mapper counts it",
+    }
+    lines = [
+        "## Long use",
+        "",
+        "Every frame has another camera and other isovalues; now and then the image's size, the "
+        "look, the budget, the volume, its colours or the mapper itself change. Memory is told of "
+        "one and the same scene, to which the view returns for every sample. *Growth*: the median "
+        "slope between all samples after the warm-up, in 1000 frames.",
+        "",
+    ]
+    for record in records:
+        samples, warm_up = record["samples"], record["warm_up"]
+        first = next(i for i, n in enumerate(samples["frame"]) if n >= warm_up)
+        rows = []
+        for key, name in names.items():
+            grown = record["growth"][key]
+            if grown is None:
+                continue
+            cells = (samples[key][0], samples[key][first], samples[key][-1], 1000 * grown)
+            verdict = goals.memory_growth(f"growth of {name}", key, grown)
+            rows.append([name, *map(bytes_, cells), report.goal(record, verdict)])
+        errors = report.goal(record, goals.no_gl_errors(record["gl_errors"]))
+        changes = ", ".join(f"{what} {times}" for what, times in record["changes"].items())
+        peak = bytes_(max(samples["peak"]))
+        lines += [
+            f"### {_of(record)}, {record['frames']} frames",
+            "",
+            *table(["memory", "at first", "warmed up", "at last", "growth", "goal"], rows),
+            f"The mapper's most: {peak}. OpenGL errors: {record['gl_errors']} (goal: {errors}). "
+            f"Changes beside camera and isovalues: {changes}.",
+            "",
+        ]
+    return lines
+
+
 #: Kinds of measurements that tell no time.
 _UNTIMED = {"rates"}
 
@@ -672,4 +715,5 @@ _SECTIONS = {
     "image_scaling": _image_scaling,
     "volume_scaling": _volume_scaling,
     "budget": _budget,
+    "soak": _soak,
 }

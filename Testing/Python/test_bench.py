@@ -20,6 +20,7 @@ from progiso.benchmarks.literature import GPU
 from progiso.benchmarks.mesh import Mesh, extract
 from progiso.benchmarks.report import markdown
 from progiso.benchmarks.settings import PEERS, Settings
+from progiso.benchmarks.soak import growth
 from progiso.benchmarks.topology import topology
 from progiso.benchmarks.view import opposite, turned
 from progiso.benchmarks.volume_mapper import VolumeMapper
@@ -38,8 +39,14 @@ KINDS = {
     "errors": {"errors"},
     "rates": {"rates"},
     "budget": {"budget"},
+    "soak": {"soak"},
 }
-OPTIONS = {"quick": ("--isovalues", 2), "paper": ("--isovalues", 2), "scaling": ("--largest", 64, "--images", "64x48,96x72")}
+OPTIONS = {
+    "quick": ("--isovalues", 2),
+    "paper": ("--isovalues", 2),
+    "scaling": ("--largest", 64, "--images", "64x48,96x72"),
+    "soak": ("--frames", 40),
+}
 
 
 @pytest.fixture(scope="module")
@@ -163,6 +170,24 @@ def test_measuring_needs_no_matplotlib(folder):
     command = [sys.executable, "-m", "progiso", "bench", "peers", *map(str, TINY), "--no-plots", "--output", "bare"]
     subprocess.run(command, cwd=folder, env=environment, check=True, capture_output=True)
     assert (folder / "bare" / "results.md").is_file() and not list((folder / "bare").glob("*.png"))
+
+
+def test_soak_judges_what_is_left_behind(results):
+    """Memory that grows by more than the goal, steps and noise aside, and errors of OpenGL's."""
+    document = load_document(results("soak") / "results.json")
+    (record,) = document["measurements"]["soak"]
+    assert record["samples"]["frame"] == list(range(41)) and record["warm_up"] == 10 and record["gl_errors"] == 0
+    assert sum(record["changes"].values()) > 0 and min(record["samples"]["rss"]) > 2**24
+    assert all(peak >= rest > 2**16 for peak, rest in zip(record["samples"]["peak"], record["samples"]["mapper"]))
+    frames, noise = np.arange(0, 10001, 50), np.random.default_rng(1).normal(0, 2**18, 201)
+    for slope, met in ((0.9, True), (1.1, False)):
+        rss = 1e9 + slope * 2**20 * frames / 1000 + noise + 2**23 * (frames > 1000)
+        record["growth"]["rss"] = growth({"frame": frames, "rss": rss}, "rss", 2000)
+        assert record["growth"]["rss"] == pytest.approx(slope * 2**20 / 1000, rel=0.05)
+        row = next(line for line in markdown(document, {}).splitlines() if line.startswith("| main memory of the process"))
+        assert ("in 1000 frames: met |" in row) == met != ("**not met**" in row)
+    record["gl_errors"] = 1
+    assert "none: **not met**" in markdown(document, {})
 
 
 FAILURES = {
