@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PipelinePrograms.h"
 
+#include <iterator>
+#include <mutex>
+
 namespace
 {
 // Compiles one shader into a program; the compiler's log where that fails.
@@ -29,12 +32,18 @@ std::string AttachShader(GLuint program, GLenum type, const std::string& source)
 }
 
 std::shared_ptr<PipelinePrograms> PipelinePrograms::OfContext(
-  const void* context, bool byExtensions)
+  std::uint64_t context, bool byExtensions)
 {
-  static std::map<const void*, std::weak_ptr<PipelinePrograms>> contexts;
+  static std::map<std::uint64_t, std::weak_ptr<PipelinePrograms>> contexts;
+  static std::mutex mutex; // windows may be rendered by threads of their own
+  const std::lock_guard<std::mutex> lock(mutex);
   std::shared_ptr<PipelinePrograms> programs = contexts[context].lock();
   if (!programs)
   {
+    for (auto entry = contexts.begin(); entry != contexts.end();) // of contexts that are gone
+    {
+      entry = entry->second.expired() ? contexts.erase(entry) : std::next(entry);
+    }
     programs = std::make_shared<PipelinePrograms>(byExtensions);
     contexts[context] = programs;
   }

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
-// The compiled stages. All mappers of a window share them: a program is compiled when the first
-// scene needs it, once.
+// The compiled stages, and the count of OpenGL's errors. All mappers of a window share them: a
+// program is compiled when the first scene needs it, once.
 #ifndef PipelinePrograms_h
 #define PipelinePrograms_h
 
 #include "PipelineStages.h"
 #include "ProgIsoGL.h"
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -17,9 +18,9 @@
 class PipelinePrograms
 {
 public:
-  /// The programs of a context, which is told by any address that is its own. The caller keeps them
-  /// alive; whoever holds them last calls Release() with the context current.
-  static std::shared_ptr<PipelinePrograms> OfContext(const void* context, bool byExtensions);
+  /// The programs of a context, which is told by a number of its own. The caller keeps them alive;
+  /// whoever holds them last calls Release() with the context current.
+  static std::shared_ptr<PipelinePrograms> OfContext(std::uint64_t context, bool byExtensions);
 
   explicit PipelinePrograms(bool byExtensions)
     : ByExtensions(byExtensions)
@@ -33,6 +34,8 @@ public:
   GLuint Get(Stage stage, const std::vector<Buffer>& bound, const PipelineExtent& extent,
     std::string& error);
   void Release();
+
+  int GLErrors = 0; ///< of the context, where they are counted
 
 private:
   GLuint Build(Stage stage, const std::vector<Buffer>& bound, const PipelineExtent& extent,

@@ -17,6 +17,7 @@ constexpr std::int64_t MaximumGroups = 65535;      // on an axis, guaranteed by 
 constexpr std::int64_t LargestRead = 1 << 18;      // bytes read at once
 constexpr std::int64_t LargestStaging = 1 << 12;   // bytes that stay allocated between reads
 constexpr std::int64_t MostSnapshots = 8;          // under way at once, with room to spare
+constexpr int MostErrors = 16;                     // of others; a lost context never has none
 constexpr std::int64_t SoftwareBuffer = 1LL << 30; // llvmpipe has no limit, whatever it reports
 
 // Bytes beyond which a buffer is made sparse: NVIDIA then backs it with large pages. Random reads
@@ -121,7 +122,7 @@ void PipelineResources::LimitBuffers(std::int64_t bytes)
   this->LargestBuffer = bytes > 0 ? std::min(bytes, this->LargestAllowed) : this->LargestAllowed;
 }
 
-bool PipelineResources::Initialize(const void* context)
+bool PipelineResources::Initialize(std::uint64_t context)
 {
   if (!this->CheckContext())
   {
@@ -129,14 +130,14 @@ bool PipelineResources::Initialize(const void* context)
   }
   const char* debug = std::getenv("PROGISO_GL_DEBUG");
   this->CountsErrors = debug && *debug && *debug != '0';
+  this->Programs = PipelinePrograms::OfContext(context, this->ByExtensions);
   if (this->CountsErrors)
   {
     glEnable(GL_DEBUG_OUTPUT);
     glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
-    glDebugMessageCallback(CountError, &this->GLErrors);
+    glDebugMessageCallback(CountError, &this->Programs->GLErrors);
   }
   this->AskLimits();
-  this->Programs = PipelinePrograms::OfContext(context, this->ByExtensions);
   glGenVertexArrays(1, &this->VertexArray);
   glGenBuffers(1, &this->Staging);
   glGenBuffers(1, &this->SceneBuffer);
@@ -158,18 +159,20 @@ void PipelineResources::Release()
   glDeleteBuffers(static_cast<GLsizei>(this->SpareSnapshots.size()), this->SpareSnapshots.data());
   this->SpareSnapshots.clear();
   this->ForgetStages();
+  glUseProgram(0); // where a stage has failed it is still in use
+  this->GLErrors = this->GetNumberOfGLErrors();
   if (this->Programs && this->Programs.use_count() == 1)
   {
+    if (this->CountsErrors)
+    {
+      glDebugMessageCallback(nullptr, nullptr); // the counter goes away with the programs
+    }
     this->Programs->Release();
   }
   this->Programs = nullptr;
   glDeleteBuffers(1, &this->SceneBuffer);
   glDeleteBuffers(1, &this->Staging);
   glDeleteVertexArrays(1, &this->VertexArray);
-  if (this->CountsErrors)
-  {
-    glDebugMessageCallback(nullptr, nullptr); // the counter goes away with this object
-  }
   this->SceneBuffer = 0;
   this->Staging = 0;
   this->StagingBytes = 0;
@@ -246,6 +249,10 @@ bool PipelineResources::Bind(Stage stage, GLuint payload, const PayloadSegment* 
 template <typename Launch>
 void PipelineResources::Run(Stage stage, const Launch& launch)
 {
+  if (!this->Error.empty())
+  {
+    return; // what an earlier stage should have made may be missing: this one could hang the GPU
+  }
   const PayloadBuffers* payload = this->PayloadOf(stage);
   const std::size_t times = payload ? payload->Segments.size() : 1;
   this->BeginTiming(stage);
@@ -388,8 +395,9 @@ bool PipelineResources::MakeBuffer(
       " are more than one GPU buffer can hold here (" + std::to_string(this->LargestBuffer) +
       "): lower the image size or the volume's");
   }
-  while (glGetError() != GL_NO_ERROR)
+  if (!this->CheckMemory())
   {
+    return false;
   }
   glGenBuffers(1, &name);
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
@@ -413,6 +421,20 @@ bool PipelineResources::MakeBuffer(
   name = 0;
   return this->Fail("the GPU has no room for " + std::to_string(bytes) + " bytes of " + what +
     ": lower the memory budget, the rate or the image size");
+}
+
+bool PipelineResources::CheckMemory()
+{
+  GLenum error = GL_NO_ERROR;
+  for (int i = 0; i < MostErrors && (error = glGetError()) != GL_NO_ERROR; ++i)
+  {
+    if (error == GL_OUT_OF_MEMORY)
+    {
+      this->Fail(
+        "the GPU has run out of memory: lower the memory budget, the rate or the image size");
+    }
+  }
+  return this->Error.empty();
 }
 
 bool PipelineResources::Allocate(Buffer buffer, std::int64_t bytes)
@@ -705,6 +727,7 @@ void PipelineResources::OrderSnapshot()
     glGenBuffers(1, &order.Buffer);
     glBindBuffer(GL_COPY_WRITE_BUFFER, order.Buffer);
     glBufferData(GL_COPY_WRITE_BUFFER, sizeof(Snapshot), nullptr, GL_STREAM_READ);
+    this->CheckMemory();
   }
   else
   {

@@ -44,17 +44,17 @@ class PipelineResources
 public:
   PipelineResources() = default;
   PipelineResources(const PipelineResources&) = delete;
-  void operator=(const PipelineResources&) = delete;
+  PipelineResources& operator=(const PipelineResources&) = delete;
+  PipelineResources& operator=(PipelineResources&&) = default;
 
-  /// Check the context, told by any address of its own, and make what is always there; false where
-  /// it cannot run the stages.
-  bool Initialize(const void* context);
+  /// Check the context, told by a number of its own, and make what is always there; false where it
+  /// cannot run the stages.
+  bool Initialize(std::uint64_t context);
   bool IsInitialized() const { return this->SceneBuffer != 0; }
   void Release();
 
-  ///@{ The first thing that went wrong since ClearError().
+  ///@{ The first thing that went wrong since Release().
   bool Fail(const std::string& message);
-  void ClearError() { this->Error.clear(); }
   const std::string& GetError() const { return this->Error; }
   ///@}
 
@@ -67,6 +67,8 @@ public:
   void Free(Lifetime lifetime);
   void Fill(Buffer buffer, std::uint32_t value);
   std::int64_t GetBytes(Buffer buffer) const;
+  /// Did OpenGL run out of memory since it was asked last? Some drivers make it where it is used.
+  bool CheckMemory();
   /// Bytes that traffic with the CPU takes now.
   std::int64_t GetStagingBytes() const;
   ///@}
@@ -98,7 +100,8 @@ public:
   void ForgetSnapshots();
   ///@}
 
-  ///@{ Run a stage on so many work groups, or on as many as the control block says at an offset; a
+  ///@{ Where nothing has gone wrong, run a stage on so many work groups, or on as many as the
+  ///control block says at an offset; a
   /// stage that reads the payload once for each of its segments.
   void Dispatch(Stage stage, std::int64_t groups);
   void DispatchIndirect(Stage stage, std::size_t controlOffset);
@@ -123,7 +126,11 @@ public:
   ///@}
   /// Bytes of graphics memory that this GPU reports; 0 where it does not tell.
   std::int64_t GetDeviceMemory() const { return this->DeviceMemory; }
-  int GetNumberOfGLErrors() const { return this->GLErrors; }
+  /// Of the context, as long as this is initialized.
+  int GetNumberOfGLErrors() const
+  {
+    return this->Programs ? this->Programs->GLErrors : this->GLErrors;
+  }
   static std::string GetDescription();
 
   /// Bytes that Read(), Write() and snapshots take at most.
@@ -181,7 +188,7 @@ private:
   std::int64_t DeviceMemory = 0;
   bool OffersSparse = false; ///< buffers that are committed page by page
   bool CountsErrors = false;
-  int GLErrors = 0;
+  int GLErrors = 0; ///< until the last Release()
   std::set<Stage> StagesRun;
   std::vector<Timing> Timings; ///< not yet added up
   std::map<Stage, double> StageMilliseconds;

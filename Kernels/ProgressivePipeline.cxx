@@ -35,9 +35,8 @@ std::string Bytes(std::int64_t bytes)
 }
 }
 
-bool ProgressivePipeline::Initialize(const void* context)
+bool ProgressivePipeline::Initialize(std::uint64_t context)
 {
-  this->Gpu.ClearError();
   if (this->Gpu.IsInitialized())
   {
     return true;
@@ -53,7 +52,7 @@ bool ProgressivePipeline::Initialize(const void* context)
     *groups = { 0, 1, 1, 0 };
   }
   this->Gpu.Write(Buffer::Control, 0, &control, sizeof(control));
-  return true;
+  return this->Gpu.CheckMemory();
 }
 
 void ProgressivePipeline::Release()
@@ -473,7 +472,10 @@ void ProgressivePipeline::Start()
   }
   const std::uint32_t yes = 1;
   this->Gpu.Write(Buffer::Control, offsetof(ControlBlock, NewImage), &yes, sizeof(yes));
-  this->Gpu.Dispatch(Stage::PlanPass, 1);
+  if (this->Gpu.CheckMemory()) // else the stages may never come to an end
+  {
+    this->Gpu.Dispatch(Stage::PlanPass, 1);
+  }
 }
 
 // The algorithm. Every dispatch's size is decided on the GPU; see Buffers.glsl for what flows
@@ -517,7 +519,7 @@ void ProgressivePipeline::RunPasses(int maximum, bool eager, const std::function
     eager || this->Gpu.IsSoftware() || this->Extent.IsSinglePass() ? 1 : PassesAhead;
   const std::int64_t last =
     maximum > 0 ? this->PassesSubmitted + maximum : std::numeric_limits<std::int64_t>::max();
-  bool more = this->Remaining > 0;
+  bool more = this->Remaining > 0 && this->GetError().empty();
   while (more || this->PassesKnown < this->PassesSubmitted)
   {
     while (
@@ -536,6 +538,10 @@ void ProgressivePipeline::RunPasses(int maximum, bool eager, const std::function
       return;
     }
     more = more && !stop() && this->PassesSubmitted < last;
+    if (!this->Started) // whoever was asked has released everything
+    {
+      return;
+    }
   }
 }
 

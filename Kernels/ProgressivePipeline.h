@@ -60,12 +60,13 @@ public:
   ProgressivePipeline() = default;
   ~ProgressivePipeline() = default; // Release() needs a current context
   ProgressivePipeline(const ProgressivePipeline&) = delete;
-  void operator=(const ProgressivePipeline&) = delete;
+  ProgressivePipeline& operator=(const ProgressivePipeline&) = delete;
+  ProgressivePipeline& operator=(ProgressivePipeline&&) = default;
 
-  /// Check the context, told by any address of its own; false and GetError() where it cannot run
-  /// the stages (OpenGL < 4.3).
-  bool Initialize(const void* context);
-  /// Delete every GL object.
+  /// Check the context, told by a number of its own; false and GetError() where it cannot run the
+  /// stages (OpenGL < 4.3).
+  bool Initialize(std::uint64_t context);
+  /// Delete every GL object. Also needed after an error, before anything else is asked for.
   void Release();
 
   /// Take another volume.
@@ -103,6 +104,7 @@ public:
   PipelineResources& GetResources() { return this->Gpu; }
   const SceneBlock& GetScene() const { return this->Scene; }
   const std::string& GetError() const { return this->Gpu.GetError(); }
+  bool CheckMemory() { return this->Gpu.CheckMemory(); }
 
   ///@{ Of all pixels, rows from the bottom, or of one: what Hits.glsl holds.
   std::vector<std::uint32_t> ReadHitKeys();

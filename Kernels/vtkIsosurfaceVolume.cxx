@@ -5,6 +5,8 @@
 #include "vtkCommand.h"
 #include "vtkObjectFactory.h"
 #include "vtkProgressiveIsosurfaceMapper.h"
+#include "vtkRenderer.h"
+#include "vtkSmartPointer.h"
 
 vtkStandardNewMacro(vtkIsosurfaceVolume);
 
@@ -13,12 +15,28 @@ void vtkIsosurfaceVolume::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
 }
 
+// As vtkVolume does, which asks its mapper for its time even where an observer has taken it away.
+int vtkIsosurfaceVolume::Draw(vtkViewport* viewport)
+{
+  const vtkSmartPointer<vtkIsosurfaceVolume> alive = this;
+  const vtkSmartPointer<vtkAbstractVolumeMapper> mapper = this->Mapper;
+  if (!mapper || !mapper->GetDataObjectInput())
+  {
+    return this->Superclass::RenderVolumetricGeometry(viewport);
+  }
+  this->Update();
+  this->GetProperty();
+  mapper->Render(static_cast<vtkRenderer*>(viewport), this);
+  this->EstimatedRenderTime += mapper->GetTimeToDraw();
+  return 1;
+}
+
 int vtkIsosurfaceVolume::RenderOpaqueGeometry(vtkViewport* viewport)
 {
   this->InvokeEvent(vtkCommand::StartEvent);
   return vtkProgressiveIsosurfaceMapper::IsTranslucent(this->GetProperty())
     ? 0
-    : this->Superclass::RenderVolumetricGeometry(viewport);
+    : this->Draw(viewport);
 }
 
 int vtkIsosurfaceVolume::RenderVolumetricGeometry(vtkViewport* viewport)
@@ -32,12 +50,12 @@ int vtkIsosurfaceVolume::RenderVolumetricGeometry(vtkViewport* viewport)
     this->DrawnWithOverlays = true;
     return 0;
   }
-  return this->Superclass::RenderVolumetricGeometry(viewport);
+  return this->Draw(viewport);
 }
 
 int vtkIsosurfaceVolume::RenderOverlay(vtkViewport* viewport)
 {
   const bool draws = this->DrawnWithOverlays;
   this->DrawnWithOverlays = false;
-  return draws ? this->Superclass::RenderVolumetricGeometry(viewport) : 0;
+  return draws ? this->Draw(viewport) : 0;
 }

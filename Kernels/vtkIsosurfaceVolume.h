@@ -45,6 +45,8 @@ protected:
   ~vtkIsosurfaceVolume() override = default;
 
 private:
+  int Draw(vtkViewport* viewport);
+
   bool DrawnWithOverlays = false; // the next time
 
   vtkIsosurfaceVolume(const vtkIsosurfaceVolume&) = delete;

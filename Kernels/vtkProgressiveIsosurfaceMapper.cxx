@@ -45,6 +45,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -59,6 +60,15 @@ constexpr int AloneAgain = 3; // renders of one view after which no other one is
 double MillisecondsSince(Clock::time_point start)
 {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// Tells contexts apart, also those that a window has one after the other. An external window says
+// at each render that its context is new.
+std::uint64_t ContextOf(vtkOpenGLRenderWindow* window)
+{
+  return window->IsA("vtkExternalOpenGLRenderWindow")
+    ? static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(window))
+    : static_cast<std::uint64_t>(window->GetContextCreationTime());
 }
 
 // The pipeline's view of a stream; words of 64 bits, as zfp writes them.
@@ -205,11 +215,13 @@ public:
   void FillStatistics();
   void ReleaseGraphics(vtkWindow* window);
   bool Report(const std::string& problem);
+  bool ReportPipeline();
 
   vtkProgressiveIsosurfaceMapper* Owner;
   ProgressivePipeline Pipeline;
   vtkWeakPointer<vtkOpenGLRenderWindow> Window;
   const vtkWindow* WindowInUse = nullptr; ///< the same, also while it is being destroyed
+  std::uint64_t Context = 0;              ///< its, where the graphics resources are
 
   // A volume, compressed; what it was made from, when, and how: image, array, rate, component,
   // whether NaN is hidden.
@@ -306,6 +318,14 @@ bool vtkProgressiveIsosurfaceMapper::Internals::Report(const std::string& proble
 {
   vtkErrorWithObjectMacro(this->Owner, << problem);
   return false;
+}
+
+// What failed may have left anything behind: the next render begins with nothing.
+bool vtkProgressiveIsosurfaceMapper::Internals::ReportPipeline()
+{
+  const std::string problem = this->Pipeline.GetError();
+  this->ReleaseGraphics(this->Window);
+  return this->Report(problem);
 }
 
 //------------------------------------------------------------------------------
@@ -483,23 +503,30 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateVolume()
 //------------------------------------------------------------------------------
 bool vtkProgressiveIsosurfaceMapper::Internals::BindWindow(vtkOpenGLRenderWindow* window)
 {
-  if (this->Window && this->Window != window)
+  const std::uint64_t context = ContextOf(window);
+  if (this->WindowInUse && (this->Window != window || this->Context != context))
   {
     this->ReleaseGraphics(this->Window);
     window->MakeCurrent();
   }
   this->Window = window;
   this->WindowInUse = window;
+  this->Context = context;
   window->GetShaderCache()->ReleaseCurrentShader();
-  return this->Pipeline.Initialize(window) || this->Report(this->Pipeline.GetError());
+  return this->Pipeline.Initialize(context) || this->ReportPipeline();
 }
 
 void vtkProgressiveIsosurfaceMapper::Internals::ReleaseGraphics(vtkWindow* window)
 {
-  if (window)
+  auto* alive = vtkOpenGLRenderWindow::SafeDownCast(window);
+  if (alive && ContextOf(alive) == this->Context)
   {
     window->MakeCurrent();
     this->Pipeline.Release();
+  }
+  else if (this->WindowInUse)
+  {
+    this->Pipeline = ProgressivePipeline(); // with their context the objects are gone
   }
   this->Window = nullptr;
   this->WindowInUse = nullptr;
@@ -615,7 +642,7 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(
   }
   if (!this->Pipeline.SetScene(scene, !sameHits))
   {
-    return this->Report(this->Pipeline.GetError());
+    return this->ReportPipeline();
   }
   if (!sameHits || !this->Pipeline.IsStarted())
   {
@@ -643,19 +670,31 @@ bool vtkProgressiveIsosurfaceMapper::Internals::Refine(vtkOpenGLRenderWindow* wi
   const double allowance = this->Owner->TimeAllowance;
   auto stop = [&]()
   {
-    return interactive &&
-      (MillisecondsSince(start) >= 1e3 * allowance || window->CheckAbortStatus());
+    const bool late = interactive && MillisecondsSince(start) >= 1e3 * allowance;
+    const bool aborted = window->CheckAbortStatus() != 0; // asks observers, who may do anything
+    if (!window->IsCurrent())
+    {
+      window->MakeCurrent();
+    }
+    return late || aborted || this->Window != window;
   };
   const bool unfinished = !this->Pipeline.GetConverged();
   if (unfinished)
   {
     this->Pipeline.RunPasses(this->Owner->MaximumPassesPerRender, interactive, stop);
   }
+  if (this->Window != window)
+  {
+    return false; // an observer has released what was to be drawn
+  }
+  if (this->Pipeline.CheckMemory())
+  {
+    this->Composite(window);
+  }
   if (!this->Pipeline.GetError().empty())
   {
-    return this->Report(this->Pipeline.GetError());
+    return this->ReportPipeline();
   }
-  this->Composite(window);
   this->Pipeline.CompleteStatistics();
   if (unfinished)
   {
@@ -677,7 +716,7 @@ bool vtkProgressiveIsosurfaceMapper::Internals::Complete()
   {
     this->Pipeline.RunPasses(0, false, []() { return false; });
   }
-  return this->Pipeline.GetError().empty() || this->Report(this->Pipeline.GetError());
+  return this->Pipeline.GetError().empty() || this->ReportPipeline();
 }
 
 // A selector has props and cells drawn as colours, pass by pass.
@@ -906,6 +945,7 @@ void vtkProgressiveIsosurfaceMapper::Render(vtkRenderer* renderer, vtkVolume* vo
                   "UseDepthPeelingForVolumes off, or use a vtkIsosurfaceVolume");
     return;
   }
+  const vtkSmartPointer<vtkProgressiveIsosurfaceMapper> alive = this; // whatever observers do
   vtkHardwareSelector* selector = renderer->GetSelector();
   if (!this->Impl->CheckLimits(renderer, volume) || !this->Impl->UpdateVolume())
   {
@@ -936,7 +976,14 @@ void vtkProgressiveIsosurfaceMapper::Render(vtkRenderer* renderer, vtkVolume* vo
   this->Impl->FillStatistics();
   double fraction = this->GetCompletedFraction();
   this->InvokeEvent(vtkCommand::ProgressEvent, &fraction);
-  this->Impl->RequestRender(window);
+  if (this->Impl->Window == window)
+  {
+    this->Impl->RequestRender(window);
+  }
+  if (!window->IsCurrent())
+  {
+    window->MakeCurrent();
+  }
 }
 
 void vtkProgressiveIsosurfaceMapper::ReleaseGraphicsResources(vtkWindow* window)
@@ -1085,7 +1132,7 @@ bool vtkProgressiveIsosurfaceMapper::DecodeOnGPU(
   glWindow->GetShaderCache()->ReleaseCurrentShader();
   ProgressivePipeline pipeline;
   std::vector<float> values;
-  bool good = pipeline.Initialize(glWindow);
+  bool good = pipeline.Initialize(ContextOf(glWindow));
   if (good)
   {
     pipeline.SetVolume(DescribeVolume(source));

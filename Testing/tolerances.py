@@ -91,6 +91,10 @@ PROCESSES_PIXELS = 5e-5
 #: The area of the triangles of all processes against that of one's, relative: coordinates are float32.
 PROCESSES_AREA = 1e-6
 
+#: The picture of the same samples stored along other axes, or at another place within the blocks: hits and normals are the same but
+#: for the last bits of coordinates, colours for a rounding, in grey levels.
+LIE_LEVELS = 2
+
 #: Our picture against that of VTK's mapper, of the same samples: part of the pixels that may differ by more than `VTK_LEVELS` grey
 #: levels in some channel. Its hits are late by up to a twentieth of a voxel (stages.STEP), and it misses what is thinner: silhouettes and
 #: the edges of cuts move by a pixel, those of every one of several translucent surfaces. Triangles move them as much.
@@ -136,3 +140,9 @@ MESH_LIGHT_MEAN = 5
 #: hardware that interpolates in steps of 1/256 of a voxel.
 MESH_DEPTH_VOXELS = 1e-3
 TEXTURE_VOXELS = 1e-2
+
+# --- long use ---------------------------------------------------------------------------------------------------------------------
+
+#: Bytes that the process grows by with each mapper that came and went, of the megabyte that it held: the heap's fragments, and what a
+#: software renderer keeps. 350 were measured.
+GROWTH_BYTES = 2000

@@ -5,7 +5,7 @@
 >>> result = progiso.render(progiso.read(fetch("sphere", size=32)), isovalue=0.8)
 
 Volumes are compressed by `compress`, those larger than memory by `compress_file` and
-`compress_slabs`, read and written by `read` and `save`, contoured by `contour`, shown by `render`,
+`compress_slabs`, at a rate that `least_rate` finds, read and written by `read` and `save`, contoured by `contour`, shown by `render`,
 by `make_isosurface` in a VTK renderer of your own, or by ``plotter.progiso.add_isosurface`` in
 pyvista.
 """
@@ -55,6 +55,7 @@ from .compression import compress, decompress, describe, is_compressed  # noqa: 
 from .geometry import image_from_array  # noqa: E402
 from .io import compress_file, read, save  # noqa: E402
 from .isosurface import make_isosurface  # noqa: E402
+from .rates import least_rate  # noqa: E402
 from .render import RenderResult, render, write_png  # noqa: E402
 from .slabs import compress_slabs  # noqa: E402
 from .statistics import depth, statistics  # noqa: E402
@@ -88,6 +89,7 @@ __all__ = [
     "describe",
     "image_from_array",
     "is_compressed",
+    "least_rate",
     "make_isosurface",
     "orbit_camera",
     "read",

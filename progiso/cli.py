@@ -76,6 +76,7 @@ def _parser():
     parser.add_argument("--version", action="version", version=f"progiso {progiso.__version__}")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
     _add_compress(commands)
+    _add_rate(commands)
     _add_decompress(commands)
     _add_info(commands)
     _add_contour(commands)
@@ -107,6 +108,11 @@ def _add_input(command, name="file"):
 def _add_array(command, rate="bits per sample, in (0, 32] (default: 8)"):
     """What to compress of a plain image, and what the rate does."""
     command.add_argument("--rate", type=float, help=rate)
+    _add_choice(command)
+
+
+def _add_choice(command):
+    """What of a plain image."""
     command.add_argument("--array", help="name of the array (default: the active scalars)")
     command.add_argument("--component", type=int, help="component of the array (default: 0)")
     command.add_argument(
@@ -125,6 +131,21 @@ def _add_compress(commands):
         "--appended", action="store_true",
         help="a .vti that reads ten times faster, though not in Debian 12's ParaView",
     )  # fmt: skip
+
+
+def _add_rate(commands):
+    description = "find the least rate at which no sample is off by more than a tolerance"
+    command = _add_command(commands, "rate", _rate, description)
+    _add_input(command)
+    command.add_argument(
+        "--tolerance", type=float, required=True, metavar="T",
+        help="largest error of a sample, above 0, in the image's units",
+    )  # fmt: skip
+    command.add_argument(
+        "--relative", action="store_true",
+        help="the tolerance is a part of the values' range, 0.001 of it, say",
+    )  # fmt: skip
+    _add_choice(command)
 
 
 def _add_decompress(commands):
@@ -346,6 +367,21 @@ def _compress(parsed):
 
 def _given(value, default):
     return default if value is None else value
+
+
+def _rate(parsed):
+    image = _read(parsed)
+    with progress_bar("Trying rates") as progress:
+        rate = progiso.least_rate(
+            image,
+            parsed.tolerance,
+            parsed.relative,
+            parsed.array,
+            _given(parsed.component, 0),
+            progress,
+            parsed.mask_nan,
+        )
+    print(f"{rate:.9g}")  # of 64ths all digits, for `compress --rate`
 
 
 def _decompress(parsed):

@@ -7,7 +7,8 @@ from .geometry import as_image
 from .vtkProgIsoFilters import vtkCompressedVolume, vtkImageZFPCompress, vtkImageZFPDecompress
 
 _POINTS, _CELLS = 0, 1  # vtkDataObject::FieldAssociations
-_GHOSTS = "vtkGhostType"  # vtkDataSetAttributes::GhostArrayName()
+#: Name of the array that hides points or cells.
+GHOSTS = "vtkGhostType"  # vtkDataSetAttributes::GhostArrayName()
 
 
 def compress(
@@ -108,7 +109,7 @@ def find_array(image, array=None):
     for of_cells, attributes in enumerate((image.GetPointData(), image.GetCellData())):
         arrays = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]
         for found in (attributes.GetScalars(), *arrays):
-            if found is None or (array is None and found.GetName() == _GHOSTS):
+            if found is None or (array is None and found.GetName() == GHOSTS):
                 continue
             if array in (None, found.GetName()):
                 return found, bool(of_cells)

@@ -86,6 +86,11 @@ def _add_set(sets, name, defaults, size_type):
             "--largest-mesh", metavar="N", type=_at_least(2),
             help="largest side of the volumes that meshes are made of (default: as memory allows)",
         )  # fmt: skip
+    if name == "soak":
+        one.add_argument(
+            "--frames", metavar="N", type=_at_least(1), default=10_000,
+            help="how many are rendered (default: %(default)s)",
+        )  # fmt: skip
     one.add_argument(
         "--no-plots",
         action="store_true",

@@ -60,12 +60,56 @@ def measure_errors(field, settings, rates=RATES, distances=SAMPLE_DISTANCES):
         source), and ``series``: {name: points}, each with ``label``, ``ms`` and `depth_error`'s
         figures. With ``left_out`` there is no image.
     """
+
+    def measure():
+        return _Measurement(field, settings).run(rates, distances)
+
+    return of_one_image(field, settings, measure)
+
+
+def of_one_image(field, settings, measure):
+    """A record of the image of the first isovalue from the first position, where memory allows it.
+
+    Parameters
+    ----------
+    field : fields.Field
+    settings : settings.Settings
+    measure : callable
+        Returns a dict.
+
+    Returns
+    -------
+    dict
+        The heading, with ``left_out`` or with what was measured.
+    """
     needed, available = int(_VOLUMES * 4 * field.voxels), available_bytes()
     heading = {**settings.heading(field), "isovalues": settings.isovalues_of(field)[:1]}
     if needed > available:
         reason = f"takes {gib(needed)} of main memory, {gib(available)} are available"
         return {**heading, "left_out": reason}
-    return {**heading, **_Measurement(field, settings).run(rates, distances)}
+    return {**heading, **measure()}
+
+
+def cast_uncompressed(field, settings):
+    """The caster's image of the uncompressed samples, within the clipping planes of ProgIso's view.
+
+    Parameters
+    ----------
+    field : fields.Field
+    settings : settings.Settings
+        The image is that of the first isovalue from the first position.
+
+    Returns
+    -------
+    progiso.oracle.caster.Cast
+    """
+    image, isovalue = plain(field), settings.isovalues_of(field)[0]
+    view = Isosurface(compressed(field), isovalue, settings.size)
+    view.look(settings.cameras(image)[0])
+    camera = view.renderer.GetActiveCamera()
+    seen, clip = Camera.from_vtk(camera), camera.GetClippingRange()
+    volume = Volume.from_image(samples(image), image)
+    return cast(volume, isovalue, seen, settings.size, clip=clip)
 
 
 class _Measurement:
@@ -82,7 +126,7 @@ class _Measurement:
 
     def run(self, rates, distances):
         start = perf_counter()
-        self._expected = self._cast()
+        self._expected = cast_uncompressed(self._field, self._settings)
         milliseconds = 1e3 * (perf_counter() - start)
         hits = int(np.isfinite(self._expected.depth).sum())
         series = {
@@ -97,15 +141,6 @@ class _Measurement:
             "resolution": self._resolution,
             "series": series,
         }
-
-    def _cast(self):
-        """The caster's image, between the clipping planes that ProgIso's view has."""
-        view = Isosurface(compressed(self._field), self._isovalue, self._settings.size)
-        view.look(self._camera)
-        camera = view.renderer.GetActiveCamera()
-        seen, clip = Camera.from_vtk(camera), camera.GetClippingRange()
-        volume = Volume.from_image(samples(self._image), self._image)
-        return cast(volume, self._isovalue, seen, self._settings.size, clip=clip)
 
     def _time(self, view):
         """Median milliseconds of the view after its opposite; the view is rendered last."""

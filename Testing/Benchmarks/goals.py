@@ -26,6 +26,11 @@ FASTER_THAN_PAPER = {GPU: (50.0, 10.0), SOFTWARE: (10.0, 1.0)}
 #: cache; and that of VTK's mapper on large volumes.
 MOVED, EXPONENT, BYTES_PER_BLOCK, BYTES_PER_PIXEL, MEMORY = 0.5, 0.15, 3, 40, 0.1
 
+#: Bytes that memory may grow by in a thousand frames: of the process, whose heap breaks up and
+#: whose driver has caches of its own; of the GPU, by its driver, which rounds to MiB; and by the
+#: mapper, which counts what it has.
+GROWTH = {"rss": 2**20, "gpu": 2**20, "mapper": 0}
+
 #: Part of the cores that others may keep busy while something is measured.
 QUIET = 0.05
 
@@ -153,6 +158,20 @@ def beside_payload(memory):
 def within_budget(beside, budget):
     """GPU memory beside the compressed stream against the budget that was set."""
     return _at_most("GPU memory beside the stream", beside, budget, bytes_, timed=False)
+
+
+def memory_growth(what, key, bytes_per_frame):
+    """Growth of a sort of memory, see `soak.measure_soak`; None without a figure."""
+    if bytes_per_frame is None:
+        return None
+    grown, limit = 1000 * bytes_per_frame, GROWTH[key]
+    note = " in 1000 frames"
+    return Verdict(what, bytes_(grown), f"≤ {bytes_(limit)}{note}", grown <= limit, timed=False)
+
+
+def no_gl_errors(count):
+    """OpenGL's errors of a long run."""
+    return Verdict("OpenGL errors", str(count), "none", count == 0, timed=False)
 
 
 def against_mapper(machine, size, field, voxels, ours_ms, mapper_ms):

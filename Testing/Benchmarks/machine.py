@@ -111,6 +111,17 @@ def gpu_bytes():
     return None if used is None else int(used) * 2**20
 
 
+def resident_bytes():
+    """Main memory that this process holds now, after what it can give back is given back.
+
+    Returns
+    -------
+    int
+    """
+    ctypes.CDLL(None).malloc_trim(0)
+    return _status("VmRSS")
+
+
 def available_bytes():
     """Main memory that is free or can be freed.
 

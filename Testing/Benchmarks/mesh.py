@@ -14,14 +14,15 @@ from .view import View
 _VTK_KIB = 1024  # unit of GetActualMemorySize()
 
 
-def extract(image, isovalue):
-    """Extract an isosurface with normals.
+def extract(image, isovalue, normals=True):
+    """Extract an isosurface.
 
     Parameters
     ----------
     image : vtkmodules.vtkCommonDataModel.vtkImageData
         Plain.
     isovalue : float
+    normals : bool, default: True
 
     Returns
     -------
@@ -37,7 +38,7 @@ def extract(image, isovalue):
     filter_ = vtkFlyingEdges3D()
     filter_.SetInputData(image)
     filter_.SetValue(0, isovalue)
-    filter_.ComputeNormalsOn()
+    filter_.SetComputeNormals(normals)
     filter_.ComputeScalarsOff()
     with vtk_errors("cannot extract the isosurface"):
         start = perf_counter()

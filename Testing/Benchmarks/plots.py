@@ -248,6 +248,24 @@ def _error_over_time(record):
     return figure
 
 
+def _draw_rates(records):
+    figure, (upper, lower) = _figure(8, 7, nrows=2, sharex=True)
+    for record, (color, marker) in zip(records, _CYCLE):
+        points = [point for point in record.get("points", []) if point["p99"]]
+        name = record["field"].rsplit("-r", 1)[0]
+        for axes, key, scale in ((upper, "p99", 1), (lower, "wrong", 100)):
+            shown = [(point["rate"], scale * point[key]) for point in points if point[key]]
+            axes.plot(*np.array(shown).reshape(-1, 2).T, color=color, marker=marker, label=name)
+    for axes in (upper, lower):
+        axes.set_yscale("log")
+        _log(axes.yaxis)
+    upper.set_ylabel("99 % of depths are off\nby less than so many voxels")
+    lower.set_ylabel("rays with wrong\nhit or miss in %")
+    lower.set_xlabel("bits per sample")
+    upper.legend()
+    return {"rates": figure}
+
+
 def _line(points):
     """The points of a series that one setting tells apart, and those that stand alone."""
     line = [point for point in points if point["label"] != DEFAULT_DISTANCE]
@@ -333,11 +351,43 @@ def _draw_budget(records):
     return {"budget": figure}
 
 
+# ---- long use
+
+
+def _draw_soak(records):
+    return {_file("soak", record): _memory_over_frames(record) for record in records}
+
+
+def _memory_over_frames(record):
+    samples, warm_up = record["samples"], record["warm_up"]
+    figure, (upper, lower) = _figure(8, 5.5, nrows=2, sharex=True)
+    for axes, key, label, color in (
+        (upper, "rss", "process", _BLUE),
+        (lower, "peak", "mapper, most since the sample before", _SKY),
+        (lower, "mapper", "mapper, at rest", _GREEN),
+        (lower, "gpu", "in use, by nvidia-smi", _ORANGE),
+    ):
+        values = [value for value in samples[key] if value is not None]
+        if values:
+            axes.plot(samples["frame"], np.divide(values, 2**20), color=color, label=label)
+    for axes, what in ((upper, "main memory"), (lower, "GPU memory")):
+        axes.axvspan(0, warm_up, color="#eeeeee", label="warm-up")
+        axes.set_ylim(bottom=0)
+        axes.set_ylabel(f"{what} in MiB")
+        axes.legend(loc="lower right", fontsize=8)
+    lower.set_xlim(0, record["frames"])
+    lower.set_xlabel("frames")
+    upper.set_title(f"{_titled(record)}: memory over {record['frames']} frames")
+    return figure
+
+
 _DRAW = {
     "peers": _draw_peers,
     "protocol": _draw_protocol,
     "errors": _draw_errors,
+    "rates": _draw_rates,
     "image_scaling": _draw_image_scaling,
     "volume_scaling": _draw_volume_scaling,
     "budget": _draw_budget,
+    "soak": _draw_soak,
 }

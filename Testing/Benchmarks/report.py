@@ -114,9 +114,7 @@ def _heading(document):
         "",
         describe(document["machine"]),
         "",
-        "Times are wall clock from the call of `Render()` to the end of the GPU's work.",
-        "",
-        *_warning(document),
+        *_about_times(document),
     ]
     rows = [
         [
@@ -130,13 +128,18 @@ def _heading(document):
     return lines + table(["command", "commit", "started", "took"], rows)
 
 
-def _warning(document):
-    """Say when figures cannot be relied on."""
-    records = [r for records in document["measurements"].values() for r in records]
+def _about_times(document):
+    """What times are, and whether they can be relied on; nothing where there are none."""
+    measured = document["measurements"]
+    records = [r for kind, records in measured.items() if kind not in _UNTIMED for r in records]
+    if not records:
+        return []
+    lines = ["Times are wall clock from the call of `Render()` to the end of the GPU's work.", ""]
     busy = [r["others_cores"] for r in records if goals.is_busy(document["machine"], r)]
     if not busy:
-        return []
+        return lines
     return [
+        *lines,
         f"**The machine was busy**: other processes took up to {number(max(busy))} of its "
         f"{document['machine']['cores']} cores during {len(busy)} of {len(records)} "
         "measurements. Their times are too long, and not all by the same factor: do not compare "
@@ -471,6 +474,88 @@ def _error_table(report, record):
     ]
 
 
+# ---- rates
+
+
+def _rates(_report, records):
+    records = [record for record in records if "left_out" not in record]
+    lines = [
+        "## Rates",
+        "",
+        "Depths against a double-precision caster over the uncompressed samples, in voxels along "
+        "the ray where both hit; rays that miss the surface where they should hit it, and that hit "
+        "one where there is none, of all rays. Errors of samples in parts of their range. Surfaces "
+        "that hang together and their handles (genus, of V − E + F) are those of FlyingEdges' mesh "
+        "of the decompressed samples, closed at the volume's border.",
+        "",
+        "The least of the measured bits per sample from which on:",
+        "",
+        *table(["field", *_RATE_GOALS], [_least_rates(record) for record in records]),
+    ]
+    for record in records:
+        lines += _rate_table(record)
+    return lines
+
+
+#: What a user may want of a point.
+_RATE_GOALS = {
+    "99 % of depths within 0.1 voxels": lambda point, _: point["p99"] <= 0.1,
+    "0.01 voxels": lambda point, _: point["p99"] <= 0.01,
+    "1 of 1000 rays wrong at most": lambda point, _: point["wrong"] <= 1e-3,
+    "1 of 10000": lambda point, _: point["wrong"] <= 1e-4,
+    "surfaces and handles within 5 %": lambda point, exact: all(
+        abs(point[key] - exact[key]) <= 0.05 * exact[key] for key in ("components", "genus")
+    ),
+}
+
+
+def _least_rates(record):
+    points, exact = record["points"], record["topology"]
+    cells = [record["field"].rsplit("-r", 1)[0]]
+    for reached in _RATE_GOALS.values():
+        failing = [i for i, p in enumerate(points) if p["p99"] is None or not reached(p, exact)]
+        first = failing[-1] + 1 if failing else 0
+        cells.append(number(points[first]["rate"]) if first < len(points) else "–")
+    return cells
+
+
+def _rate_table(record):
+    low, high = record["range"]
+    exact = record["topology"]
+    rows = [
+        [
+            number(point["rate"]),
+            *(_part(point[key], high - low) for key in ("max_error", "rms_error")),
+            *(number(point[key]) for key in ("median", "p99")),
+            *(percent(100 * point[key]) for key in ("missed", "invented")),
+            *_surface_cells(point),
+        ]
+        for point in record["points"]
+    ]
+    rows.append(["uncompressed", *[""] * 6, *_surface_cells(exact)])
+    headers = [
+        *("bits per sample", "sample error: largest", "RMS", "depth error: median", "99 %"),
+        *("missed rays", "invented rays", "surfaces", "handles", "triangles"),
+    ]
+    return [
+        f"### {record['field'].rsplit('-r', 1)[0]}, {pixels(record['size'])}, isovalue "
+        f"{number(record['isovalue'])}",
+        "",
+        f"Samples from {number(low)} to {number(high)}; {count(record['hits'])} rays hit.",
+        "",
+        *table(headers, rows),
+    ]
+
+
+def _part(value, whole):
+    """A part of a whole, short."""
+    return f"{value / whole:.1e}" if value else "0"
+
+
+def _surface_cells(point):
+    return [str(point["components"]), str(point["genus"]), str(point["triangles"])]
+
+
 # ---- scaling and budgets
 
 
@@ -575,12 +660,60 @@ def _budget_cells(point):
     return [*sizes, number(point["passes"]), *times]
 
 
+# ---- long use
+
+
+def _soak(report, records):
+    names = {
+        "rss": "main memory of the process",
+        "gpu": "GPU memory in use (nvidia-smi)",
+        "mapper": "GPU memory, as the mapper counts it",
+    }
+    lines = [
+        "## Long use",
+        "",
+        "Every frame has another camera and other isovalues; now and then the image's size, the "
+        "look, the budget, the volume, its colours or the mapper itself change. Memory is told of "
+        "one and the same scene, to which the view returns for every sample. *Growth*: the median "
+        "slope between all samples after the warm-up, in 1000 frames.",
+        "",
+    ]
+    for record in records:
+        samples, warm_up = record["samples"], record["warm_up"]
+        first = next(i for i, n in enumerate(samples["frame"]) if n >= warm_up)
+        rows = []
+        for key, name in names.items():
+            grown = record["growth"][key]
+            if grown is None:
+                continue
+            cells = (samples[key][0], samples[key][first], samples[key][-1], 1000 * grown)
+            verdict = goals.memory_growth(f"growth of {name}", key, grown)
+            rows.append([name, *map(bytes_, cells), report.goal(record, verdict)])
+        errors = report.goal(record, goals.no_gl_errors(record["gl_errors"]))
+        changes = ", ".join(f"{what} {times}" for what, times in record["changes"].items())
+        peak = bytes_(max(samples["peak"]))
+        lines += [
+            f"### {_of(record)}, {record['frames']} frames",
+            "",
+            *table(["memory", "at first", "warmed up", "at last", "growth", "goal"], rows),
+            f"The mapper's most: {peak}. OpenGL errors: {record['gl_errors']} (goal: {errors}). "
+            f"Changes beside camera and isovalues: {changes}.",
+            "",
+        ]
+    return lines
+
+
+#: Kinds of measurements that tell no time.
+_UNTIMED = {"rates"}
+
 _SECTIONS = {
     "peers": _peers,
     "protocol": _protocol,
     "latency": _latency,
     "errors": _errors,
+    "rates": _rates,
     "image_scaling": _image_scaling,
     "volume_scaling": _volume_scaling,
     "budget": _budget,
+    "soak": _soak,
 }

@@ -11,8 +11,10 @@ from .fields import parse_field
 from .latency import measure_latency
 from .peers import measure_peers
 from .protocol import measure_protocol
+from .rates import measure_rates
 from .scaling import measure_image_scaling, measure_volume_scaling
 from .settings import PEERS
+from .soak import measure_soak
 
 SCANS = ("ct-cranium-r8", "mri-brain-r8")
 SMALL = ("marschner-lobb-128-k6-r4", "gyroid-256-k6-r2")
@@ -50,7 +52,9 @@ SETS = {
         "beside VTK's isosurface mapper and FlyingEdges", (*SCANS, *SMALL, *LARGE), PEERS, 10
     ),
     "errors": Defaults("depth error against run time", (*SCANS, *SMALL), PEERS, 10),
+    "rates": Defaults("errors and topology over the bits per sample", (*SCANS, *SMALL), PEERS, 10),
     "budget": Defaults("time and memory within memory budgets", (LARGE[0],), PEERS, 10),
+    "soak": Defaults("memory over thousands of random changes", ("gyroid-64-k3-r8",), PEERS, 2),
 }
 
 #: What `quick` leaves out of the longer series.
@@ -117,5 +121,7 @@ _STEPS = {
     "scaling": _scaling,
     "peers": partial(_each, "peers", measure_peers),
     "errors": partial(_each, "errors", measure_errors),
+    "rates": partial(_each, "rates", measure_rates),
     "budget": partial(_each, "budget", measure_budget),
+    "soak": partial(_each, "soak", measure_soak),
 }

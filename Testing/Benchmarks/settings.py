@@ -36,6 +36,8 @@ class Settings:
         Widths and heights in the scaling with image size.
     largest_mesh : int, optional
         Largest side of the volumes that meshes are made of.
+    frames : int
+        Of the long run.
     """
 
     size: tuple
@@ -46,6 +48,7 @@ class Settings:
     largest: Optional[int] = None
     images: tuple = IMAGE_SIZES
     largest_mesh: Optional[int] = None
+    frames: int = 10_000
 
     def isovalues_of(self, field):
         """The isovalues that a field is rendered at, a list of float."""

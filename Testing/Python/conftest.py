@@ -5,6 +5,7 @@ import pathlib
 import sys
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
@@ -14,6 +15,13 @@ sys.path.insert(0, str(HERE))
 if not os.environ.get("DISPLAY"):
     os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkOSOpenGLRenderWindow")
 os.environ.setdefault("PROGISO_GL_DEBUG", "1")
+
+# Property-based tests take the same examples every time, unless pytest is called with `--hypothesis-profile long`.
+settings.register_profile("progiso", max_examples=25, derandomize=True, deadline=None, suppress_health_check=list(HealthCheck))
+settings.register_profile(
+    "long", settings.get_profile("progiso"), max_examples=int(os.environ.get("PROGISO_EXAMPLES", 2000)), derandomize=False
+)
+settings.load_profile("progiso")
 
 
 def pytest_configure(config):

@@ -85,9 +85,12 @@ class Scene:
     def clipping_range(self):
         return self.renderer.GetActiveCamera().GetClippingRange()
 
-    def render(self):
+    def render(self, clipping_range=None):
         """Render until the image is complete; return how many renders that took."""
-        self.renderer.ResetCameraClippingRange()
+        if clipping_range is None:
+            self.renderer.ResetCameraClippingRange()
+        else:
+            self.renderer.GetActiveCamera().SetClippingRange(clipping_range)
         for count in itertools.count(1):
             self.window.Render()
             if self.mapper.GetConverged():
@@ -96,9 +99,9 @@ class Scene:
         assert self.mapper.GetNumberOfGLErrors() == 0
         return count
 
-    def depth(self):
+    def depth(self, clipping_range=None):
         """Render; return the depth image, row 0 at the top."""
-        self.render()
+        self.render(clipping_range)
         return depth(self.mapper)
 
     def statistics(self):

@@ -20,11 +20,15 @@ from progiso.benchmarks.literature import GPU
 from progiso.benchmarks.mesh import Mesh, extract
 from progiso.benchmarks.report import markdown
 from progiso.benchmarks.settings import PEERS, Settings
+from progiso.benchmarks.soak import growth
+from progiso.benchmarks.topology import topology
 from progiso.benchmarks.view import opposite, turned
 from progiso.benchmarks.volume_mapper import VolumeMapper
+from progiso.data import fetch
 from progiso.verification.agreement import depth_error
 from support import blobs, make_image, noise
 from test_cli import call
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 TINY = ("--fields", "gyroid-24-k2-r8", "--size", "64x48", "--positions", 2)
 KINDS = {
@@ -33,9 +37,16 @@ KINDS = {
     "scaling": {"image_scaling", "volume_scaling"},
     "peers": {"peers"},
     "errors": {"errors"},
+    "rates": {"rates"},
     "budget": {"budget"},
+    "soak": {"soak"},
 }
-OPTIONS = {"quick": ("--isovalues", 2), "paper": ("--isovalues", 2), "scaling": ("--largest", 64, "--images", "64x48,96x72")}
+OPTIONS = {
+    "quick": ("--isovalues", 2),
+    "paper": ("--isovalues", 2),
+    "scaling": ("--largest", 64, "--images", "64x48,96x72"),
+    "soak": ("--frames", 40),
+}
 
 
 @pytest.fixture(scope="module")
@@ -161,6 +172,24 @@ def test_measuring_needs_no_matplotlib(folder):
     assert (folder / "bare" / "results.md").is_file() and not list((folder / "bare").glob("*.png"))
 
 
+def test_soak_judges_what_is_left_behind(results):
+    """Memory that grows by more than the goal, steps and noise aside, and errors of OpenGL's."""
+    document = load_document(results("soak") / "results.json")
+    (record,) = document["measurements"]["soak"]
+    assert record["samples"]["frame"] == list(range(41)) and record["warm_up"] == 10 and record["gl_errors"] == 0
+    assert sum(record["changes"].values()) > 0 and min(record["samples"]["rss"]) > 2**24
+    assert all(peak >= rest > 2**16 for peak, rest in zip(record["samples"]["peak"], record["samples"]["mapper"]))
+    frames, noise = np.arange(0, 10001, 50), np.random.default_rng(1).normal(0, 2**18, 201)
+    for slope, met in ((0.9, True), (1.1, False)):
+        rss = 1e9 + slope * 2**20 * frames / 1000 + noise + 2**23 * (frames > 1000)
+        record["growth"]["rss"] = growth({"frame": frames, "rss": rss}, "rss", 2000)
+        assert record["growth"]["rss"] == pytest.approx(slope * 2**20 / 1000, rel=0.05)
+        row = next(line for line in markdown(document, {}).splitlines() if line.startswith("| main memory of the process"))
+        assert ("in 1000 frames: met |" in row) == met != ("**not met**" in row)
+    record["gl_errors"] = 1
+    assert "none: **not met**" in markdown(document, {})
+
+
 FAILURES = {
     "set": (["fastest"], "fastest"),
     "field": (["peers", "--fields", "teapot-64"], "teapot-64"),
@@ -209,7 +238,7 @@ def test_depth_error_of_a_shifted_image():
     result = cast(volume, 0.0, Camera((40, 30, 70), (6, 10, 20), view_angle=45), (80, 60))
     hit = np.isfinite(result.depth)
     assert 500 < hit.sum() < hit.size
-    assert depth_error(result.depth, result.depth, result.voxels) == {"mean": 0, "median": 0, "p99": 0, "wrong": 0}
+    assert set(depth_error(result.depth, result.depth, result.voxels).values()) == {0}
     shifted = depth_error(result.depth - 0.25 / result.voxels, result.depth, result.voxels)
     assert shifted["mean"] == pytest.approx(0.25) and shifted["p99"] == pytest.approx(0.25) and shifted["wrong"] == 0
     partial = result.depth.copy()
@@ -218,6 +247,36 @@ def test_depth_error_of_a_shifted_image():
     everywhere = np.where(hit, result.depth, 1.0)
     assert depth_error(everywhere, result.depth, result.voxels)["wrong"] == np.mean(~hit)
     assert depth_error(np.full_like(partial, np.inf), result.depth, result.voxels)["mean"] is None
+
+
+@pytest.mark.parametrize("border", [False, True])
+def test_topology(border):
+    """Two tori and a ball; also where the volume's border cuts the ball."""
+    z, y, x = np.indices((40, 50, 90), dtype=float)
+
+    def torus(at):
+        return 5 - np.hypot(np.hypot(x - at, y - 25.2) - 13, z - 19.7)
+
+    ball = 7 - np.sqrt((x - 20.1) ** 2 + (y - 25.3) ** 2 + (z - (1.5 if border else 20.2)) ** 2)
+    values = np.maximum(np.maximum(torus(20.3), torus(65.6)), ball).astype(np.float32)
+    found = topology(make_image(values), 0.0)
+    assert (found["components"], found["genus"], found["euler"]) == (3, 2, 2)
+    assert topology(make_image(values), 100.0) == {"triangles": 0, "components": 0, "euler": 0, "genus": 0}
+
+
+def test_rates_tell_what_they_cost(results):
+    """Errors fall with the rate; the finest has the surface as it is."""
+    record = load_document(results("rates") / "results.json")["measurements"]["rates"][0]
+    points = record["points"]
+    assert [point["rate"] for point in points] == sorted(point["rate"] for point in points)
+    for key in ("max_error", "rms_error", "p99"):
+        assert points[0][key] > 5 * points[4][key] > 500 * points[-1][key]
+    assert points[-1]["wrong"] == 0 and points[-1]["triangles"] == record["topology"]["triangles"]
+    values = progiso.read(fetch("gyroid", size=24, k=2)).GetPointData().GetScalars()
+    decoded = progiso.decompress(progiso.compress(progiso.read(fetch("gyroid", size=24, k=2)), points[2]["rate"]))
+    off = vtk_to_numpy(decoded.GetPointData().GetScalars()).astype(float) - vtk_to_numpy(values)
+    assert points[2]["max_error"] == np.abs(off).max()
+    assert points[2]["rms_error"] == pytest.approx(np.sqrt(np.mean(off**2)))
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from oracle.caster import Cast
 from progiso.cli import main
-from progiso.verification import agreement, command, scene
+from progiso.verification import agreement, command, cracks, scene
 from progiso.verification.case import FAILED, LIMIT, OK, Case, Outcome, Settings, row_of, worst_of
 from progiso.verification.table import SECTIONS, cases
 from test_cli import call
@@ -149,3 +149,26 @@ def test_agreement_of_grazing_rays():
     found = agreement.compare(np.array([[2.5, 3.5, np.inf, 0.5, np.inf]], np.float32), cast)
     assert found.error.tolist() == [[0, 5, 0, 5, 0]] and found.grazing == 1 and found.hits == 3
     assert found.wrong.tolist() == [[False, True, False, True, False]]
+
+
+def test_rays_through_a_hole_fail(monkeypatch):
+    """A closed field whose skin is taken off after it was checked: the table counts the rays and tells how to repeat the first."""
+    closed = cracks.compressed_field
+
+    def opened(field, rate):
+        closed(field, rate)
+        return scene.compressed(np.where(field.skin, 1.0, field.values).astype(np.float32), rate)
+
+    monkeypatch.setattr(cracks, "compressed_field", opened)
+    ((section, case),) = cases(containing="box of noise")
+    row = row_of(section, case, Settings(rays=40_000))
+    assert row["verdict"] == FAILED and row["limit"] == 0 < row["error"] and "first wrong: row" in row["note"]
+    rays = int(re.fullmatch(r"of (\d+) rays", row["unit"])[1])
+    assert rays >= 10_000 and row["error"] <= rays
+
+
+@pytest.mark.parametrize("rays", ["0", "many", "-1e6", "nan", "1e300"])
+def test_a_wrong_number_of_rays(rays, capsys):
+    with pytest.raises(SystemExit):
+        main(["verify", f"--rays={rays}"])
+    assert "is no number from 1 to 1e12" in capsys.readouterr().err

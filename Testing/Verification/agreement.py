@@ -104,13 +104,13 @@ def depth_error(depth, expected, voxels):
     -------
     dict
         ``mean``, ``median`` and ``p99`` in voxels over the rays that both hit (None where there
-        are none), and ``wrong``, the fraction of all rays that hit where they should not or the
-        other way round.
+        are none); ``missed`` and ``invented``, the fractions of all rays that do not hit where they
+        should, and that hit where they should not; and ``wrong``, that of both.
 
     Examples
     --------
     >>> depth_error(np.array([[1.5, np.inf]]), np.array([[1.0, 2.0]]), np.full((1, 2), 2.0))
-    {'mean': 1.0, 'median': 1.0, 'p99': 1.0, 'wrong': 0.5}
+    {'mean': 1.0, 'median': 1.0, 'p99': 1.0, 'missed': 0.5, 'invented': 0.0, 'wrong': 0.5}
     """
     hit, due = np.isfinite(depth), np.isfinite(expected)
     both = hit & due
@@ -119,5 +119,7 @@ def depth_error(depth, expected, voxels):
         "mean": float(off.mean()) if off.size else None,
         "median": float(np.median(off)) if off.size else None,
         "p99": float(np.quantile(off, 0.99)) if off.size else None,
+        "missed": float(np.mean(due & ~hit)),
+        "invented": float(np.mean(hit & ~due)),
         "wrong": float(np.mean(hit != due)),
     }

@@ -20,14 +20,17 @@ class Settings:
         Width and height of the images in pixels, where a case has none of its own.
     repeat : int
         How often an image is timed; the best counts.
+    rays : int
+        How many are cast at closed surfaces.
     """
 
     size: tuple = (320, 240)
     repeat: int = 3
+    rays: int = 1_000_000
 
 
 #: Of ``--quick``.
-QUICK = Settings((128, 96), 2)
+QUICK = Settings((128, 96), 2, 100_000)
 
 
 @dataclass(frozen=True)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import argparse
 import shlex
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 from .._files import atomic_path, check_output
@@ -28,11 +30,27 @@ def add_verify(command):
     command.add_argument(
         "--cases", metavar="TEXT", default="", help="only those with this text in their names"
     )
+    command.add_argument(
+        "--rays", metavar="N", type=_count,
+        help=f"to be cast at closed surfaces, 1e8 say (default: {Settings.rays:.0e}, "
+        f"quick: {QUICK.rays:.0e})",
+    )  # fmt: skip
     command.add_argument("--json", metavar="FILE", type=Path, help="write the rows as JSON")
     command.add_argument(
         "--output", metavar="PAGE.md", type=Path, help="write the table as Markdown"
     )
     command.set_defaults(run=_verify)
+
+
+def _count(text):
+    """A type of option: a number of rays, which may have an exponent."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 1 <= value <= 1e12:
+        raise argparse.ArgumentTypeError(f"'{text}' is no number from 1 to 1e12")
+    return int(value)
 
 
 def _verify(parsed):
@@ -42,7 +60,10 @@ def _verify(parsed):
     listed = cases(parsed.quick, parsed.cases)
     if not listed:
         raise ValueError(f"no case has '{parsed.cases}' in its name")
-    document = verify(listed, QUICK if parsed.quick else Settings(), _say(len(listed)))
+    settings = QUICK if parsed.quick else Settings()
+    if parsed.rays is not None:
+        settings = replace(settings, rays=parsed.rays)
+    document = verify(listed, settings, _say(len(listed)))
     print_table(document["rows"])
     if parsed.json is not None:
         write_json(document, parsed.json)

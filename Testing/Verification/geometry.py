@@ -39,6 +39,17 @@ def _placed(settings, user=None, **geometry):
     return check_views(settings, image, (_ISOVALUE,), cameras, user=user)
 
 
+def _stretched(spacing, settings):
+    """Beams and plates, from as near as their middle side asks for."""
+    image = _field(spacing=spacing)
+    low, high = np.array(image.GetBounds()).reshape(3, 2).T
+    reach = np.full(3, np.median(high - low) / 2)
+    bounds = np.stack([(low + high) / 2 - reach, (low + high) / 2 + reach], axis=1).ravel()
+    first, second, third = (orbit_camera(bounds, i, 4) for i in (1, 2, 3))
+    cameras = first, second, parallel(third, 1.5 * reach[0])
+    return check_views(settings, image, (_ISOVALUE,), cameras)
+
+
 def _matrix(linear):
     matrix = np.eye(4)
     matrix[:3, :3] = linear
@@ -153,6 +164,10 @@ def _large_image(settings):
 
 CASES = (
     Case("spacing 1 to 1000", partial(_placed, spacing=(0.01, 10, 1))),
+    *(
+        Case(f"spacing {x:g}, {y:g}, {z:g}", partial(_stretched, (x, y, z)), quick=False)
+        for x, y, z in ((1, 1000, 1), (0.001, 1, 1), (1, 1, 0.001), (1000, 1, 0.001))
+    ),
     Case("origin 1e6, spacing 1e-3", partial(_placed, origin=(1e6, -1e6, 1e6), spacing=(1e-3,) * 3)),
     Case("scale 1e-9", partial(_placed, spacing=(1e-9,) * 3)),
     Case("scale 1e9", partial(_placed, spacing=(1e9,) * 3)),
@@ -162,6 +177,10 @@ CASES = (
         quick=False,
     ),
     Case("mirrored direction", partial(_placed, direction=np.diag([-1.0, 1, 1]))),
+    Case(
+        "sheared direction",
+        partial(_placed, direction=[[1, 0.4, 0], [0, 1, 0.2], [0.1, 0, 1]], spacing=(1, 0.7, 1.3)),
+    ),
     Case(
         "sheared by the prop's matrix",
         partial(_placed, user=_matrix([[1, 0.4, 0], [0, 1, 0.2], [0.1, 0, 1.5]]), spacing=(1, 2, 1)),
@@ -184,6 +203,7 @@ CASES = (
     Case("rays along the axes, on planes of voxels", _along_axes),
     Case("rays through corners and edges of cells", _through_corners),
     Case("view angle 0.01 degrees", partial(_angle, 0.01)),
+    Case("view angle 1 degree", partial(_angle, 1.0), quick=False),
     Case("view angle 170 degrees", partial(_angle, 170.0)),
     Case("near and far plane through the surface", _clipped),
     Case("zoom: a voxel fills the image", partial(_zoomed, 0.5)),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from . import geometry, normals, stiff, values
+from . import compression, cracks, geometry, normals, stiff, values
 from .case import row_of
 
 SECTIONS = {
@@ -10,6 +10,8 @@ SECTIONS = {
     "Values": values.CASES,
     "Normals": normals.CASES,
     "Geometry": geometry.CASES,
+    "Compression": compression.CASES,
+    "Cracks": cracks.CASES,
 }
 
 
