@@ -77,13 +77,12 @@ void AddSlab(vtkCompressedVolumeBuilder* builder, Taken& taken, Bytes& bytes)
     taken.Samples = vtkSmartPointer<vtkDataArray>::Take(slab->NewInstance());
     taken.Component = component;
   }
-  const int stride = slab->GetNumberOfComponents();
-  for (vtkIdType i = 0; i < slab->GetNumberOfTuples(); ++i)
-  {
-    // exact, where a double is not
-    const vtkVariant value = slab->GetVariantValue(stride * i + component);
-    taken.Samples->InsertVariantValue(taken.Samples->GetNumberOfValues(), value);
-  }
+  // exact, where doubles are not
+  const vtkIdType tuples = slab->GetNumberOfTuples();
+  const auto one = vtkSmartPointer<vtkDataArray>::Take(slab->NewInstance());
+  one->SetNumberOfTuples(tuples);
+  one->CopyComponent(0, slab, component);
+  taken.Samples->InsertTuples(taken.Samples->GetNumberOfTuples(), tuples, 0, one);
 }
 
 //------------------------------------------------------------------------------
