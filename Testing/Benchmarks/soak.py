@@ -73,7 +73,7 @@ def measure_soak(field, settings):
     Returns
     -------
     dict
-        ``frames``; ``samples``, lists of the same length: ``frame``, ``rss`` (the process's memory),
+        ``frames``; ``samples``, lists of the same length: ``frame``, ``rss`` (main memory),
         ``mapper`` (what the mapper says that it holds on the GPU) and ``gpu`` (memory in use by
         nvidia-smi; None without), all at rest and in bytes, and ``peak``, the mapper's largest
         since the sample before; ``warm_up``, the first frame that counts; ``growth``: {``rss``,
@@ -181,8 +181,8 @@ class _Walk:
         return actor
 
     def _warm_up(self):
-        """Render every look once, at full size: decoded as a whole, with a cache, and with the least
-        memory that any of them can be rendered with."""
+        """Render every look once, at full size: decoded as a whole, with a cache, and within the
+        least memory that any of them can be rendered with."""
         for whole, limited in ((True, False), (False, False), (False, True)):
             self.view.mapper.SetDecodeWholeVolume(whole)
             self.view.mapper.SetMemoryBudget(self._least if limited else 0)

@@ -397,8 +397,8 @@ def test_an_exception_in_an_observer(scene, event, capfd):
     def fail(_caller):
         raise Trouble("of the observer's own")
 
-    targets = {"ProgressEvent": stage.mapper, "StartEvent": stage.volumes[0], "EndEvent": stage.window, "AbortCheckEvent": stage.window}
-    done = observed(stage, event, fail, targets[event])
+    target = {"ProgressEvent": stage.mapper, "StartEvent": stage.volumes[0]}.get(event, stage.window)
+    done = observed(stage, event, fail, target)
     assert np.array_equal(stage.picture(), expected)
     assert done and "Trouble: of the observer's own" in capfd.readouterr().err
     assert np.array_equal(stage.picture(), expected)
