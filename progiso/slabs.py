@@ -16,13 +16,20 @@ _WORTHWHILE = 2**23
 
 
 def compress_slabs(
-    slabs, dimensions, rate=8.0, name="scalars", threads=0, progress=None, mask_nan=False
+    slabs,
+    dimensions,
+    rate=8.0,
+    name="scalars",
+    threads=0,
+    progress=None,
+    mask_nan=False,
+    units=(0.0, 1.0),
 ):
     """Compress a volume that is computed or read a few slices at a time.
 
     What is held in memory is one slab and the compressed stream. The result is bit for bit that of
-    `compress` on the whole volume, but for values that float32 cannot hold: units for them are
-    found where all are at hand.
+    `compress` on the whole volume, but for values that float32 cannot hold: there `compress`, which
+    sees all of them, chooses `units` itself.
 
     Parameters
     ----------
@@ -31,7 +38,7 @@ def compress_slabs(
         one numeric type, x fastest; any depth will do, 4 slices or more at a time are fastest.
         Each is done with before the next is asked for, so that its memory may be used again.
         Or ``slice_at(z)``, a function of a slice's number that returns the slice; it is called
-        from several threads at once, and its values are taken as float32.
+        from several threads at once, and its values are taken as float32 (float64 with `units`).
     dimensions : sequence of int
         Samples along x (width), y (height) and z, each at least 2.
     rate : float, default: 8
@@ -44,6 +51,9 @@ def compress_slabs(
         Called with the fraction done, from 0 to 1.
     mask_nan : bool, default: False
         Whether NaN and infinite samples are hidden, as in `compress`.
+    units : tuple of 2 float, default: (0, 1)
+        Offset and scale: the stream has (value - offset) / scale, as float32. So it holds small
+        differences on a large offset, and values beyond float32.
 
     Returns
     -------
@@ -55,7 +65,7 @@ def compress_slabs(
     ValueError
         When a slab's shape does not fit the dimensions.
     RuntimeError
-        When the rate or the dimensions are out of range, there are too few or too many slices, or
+        When the rate, the dimensions or the units are out of range, there are too few or too many slices, or
         values are NaN or infinite and not to be hidden, or too small for ZFP; the message says
         what, and where.
 
@@ -69,18 +79,24 @@ def compress_slabs(
     [32, 32, 32]
     """
     dimensions = tuple(int(n) for n in dimensions)
+    units = tuple(map(float, units))
     if callable(slabs):
-        slabs = compute_slabs(slabs, dimensions, threads)
+        kind = np.float32 if units == (0.0, 1.0) else np.float64
+        slabs = compute_slabs(slabs, dimensions, threads, kind)
     arrays = (_vtk_array(slab) for slab in _whole_layers(slabs, dimensions))
-    return build(arrays, dimensions, rate, name, 0, threads, progress, mask_nan)
+    return build(arrays, dimensions, rate, name, 0, threads, progress, mask_nan, units)
 
 
-def build(arrays, dimensions, rate, name, component, threads, progress, mask_nan):
+def build(
+    arrays, dimensions, rate, name, component, threads, progress, mask_nan, units=(0.0, 1.0)
+):
     """Compress slabs of whole layers of blocks that are VTK arrays; see `compress_slabs`."""
     builder = vtkCompressedVolumeBuilder()
     builder.SetArrayName(name)
     builder.SetNumberOfThreads(threads)
     builder.SetMaskNonFinite(bool(mask_nan))
+    builder.SetOffset(units[0])
+    builder.SetScale(units[1])
     _require(builder.Start(dimensions, rate), builder)
     for array in arrays:
         _require(builder.AddSlab(array, component), builder)
@@ -91,7 +107,7 @@ def build(arrays, dimensions, rate, name, component, threads, progress, mask_nan
     return image
 
 
-def compute_slabs(slice_at, dimensions, threads=0):
+def compute_slabs(slice_at, dimensions, threads=0, kind=np.float32):
     """Compute a volume slab by slab, in threads.
 
     Parameters
@@ -103,10 +119,11 @@ def compute_slabs(slice_at, dimensions, threads=0):
         Samples along x, y and z.
     threads : int, default: 0
         0 for one per core.
+    kind : numpy.dtype, default: float32
 
     Yields
     ------
-    numpy.ndarray of float32, shape (depth, height, width)
+    numpy.ndarray of that kind, shape (depth, height, width)
         The next slices. The same memory every time: use it before the next is asked for.
 
     Examples
@@ -117,7 +134,7 @@ def compute_slabs(slice_at, dimensions, threads=0):
     width, height, slices = dimensions
     threads = threads or _cores()
     worthwhile = max(threads, _WORTHWHILE // (width * height))
-    slab = np.empty((min(slices, -(-worthwhile // 4) * 4), height, width), np.float32)
+    slab = np.empty((min(slices, -(-worthwhile // 4) * 4), height, width), kind)
 
     def compute(place, z):
         slab[place] = slice_at(z)

@@ -93,6 +93,17 @@ def test_builder(shifted):
     assert stream_of(image) == stream_of(shifted) and progiso.describe(image)["range"] == about["range"]
 
 
+def test_slabs(shifted):
+    """Given the units, slabs and slices make the filter's stream."""
+    about = progiso.describe(shifted)
+    values, units = OFFSET + SCALE * FIELD, (about["offset"], about["scale"])
+    for slabs in (iter(values), lambda z: values[z]):
+        image = progiso.compress_slabs(slabs, SHAPE[::-1], 32, units=units)
+        assert stream_of(image) == stream_of(shifted)
+    with pytest.raises(RuntimeError, match="scale"):
+        progiso.compress_slabs(iter(values), SHAPE[::-1], units=(0, -1))
+
+
 @pytest.mark.parametrize("scale", [0.0, -1.0, float("nan"), float("inf")])
 def test_builder_refuses_no_units(scale):
     builder = vtkCompressedVolumeBuilder()

@@ -28,7 +28,9 @@ _ABOUT = """\
   done, which the note names.
 - **time** is the least of a few complete images, wall clock, another image having been rendered
   before each; of several images that of the slowest. What stability costs shows beside the first
-  row, a plain field's image."""
+  row, a plain field's image.
+- The note tells of the image with the error: how many rays hit, and where some graze, how many of
+  those that can hit do, and how many of them do not have the caster's own hit."""
 
 
 def print_table(rows):
