@@ -401,7 +401,16 @@ std::string vtkCompressedVolume::CheckGeometry(vtkImageData* image)
       return message.str();
     }
   }
-  return Contains(this->Extent, image->GetExtent())
+  const int* own = image->GetExtent();
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (own[2 * axis + 1] < own[2 * axis] + (cells ? 1 : 0))
+    {
+      message << "the image has no " << (cells ? "cells" : "points") << " along axis " << axis;
+      return message.str();
+    }
+  }
+  return Contains(this->Extent, own)
     ? std::string()
     : "its stream is that of another piece (one compressed volume cannot be put together from "
       "several)";
@@ -570,10 +579,11 @@ void vtkCompressedVolume::GetOwnExtent(vtkImageData* image, int own[6])
   vtkTypeInt64 low = first - begin, high = last - begin;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const vtkTypeInt64 start = own[2 * axis], end = own[2 * axis + 1];
-    const vtkTypeInt64 cells = std::max<vtkTypeInt64>(end - start, 1);
-    own[2 * axis] = static_cast<int>(start + low % cells);
-    own[2 * axis + 1] = static_cast<int>(std::min(start + high % cells + 1, end));
+    const vtkTypeInt64 start = own[2 * axis], most = own[2 * axis + 1];
+    const vtkTypeInt64 cells = std::max<vtkTypeInt64>(most - start, 1);
+    const auto place = std::minmax({ low % cells, high % cells }); // marks may be in disorder
+    own[2 * axis] = static_cast<int>(start + place.first);
+    own[2 * axis + 1] = static_cast<int>(std::min(start + place.second + 1, most));
     low /= cells;
     high /= cells;
   }
@@ -671,6 +681,15 @@ void vtkCompressedVolume::SetArrayName(const std::string& name)
     this->ArrayName = name;
     this->Modified();
   }
+}
+
+//------------------------------------------------------------------------------
+// The largest doubles, rounded to float32 in the stream's units, may lie beyond what doubles hold.
+void vtkCompressedVolume::SetStoredRange(double low, double high)
+{
+  const double most = std::numeric_limits<double>::max();
+  const auto bounded = [=](double value) { return std::min(std::max(value, -most), most); };
+  this->SetRange(bounded(this->ToSample(low)), bounded(this->ToSample(high)));
 }
 
 //------------------------------------------------------------------------------

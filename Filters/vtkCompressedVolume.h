@@ -202,6 +202,7 @@ public:
    */
   vtkGetVector2Macro(Range, double);
   vtkSetVector2Macro(Range, double);
+  void SetStoredRange(double low, double high); ///< in its units; what overflows is cut off
   ///@}
 
   ///@{

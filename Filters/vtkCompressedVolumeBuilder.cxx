@@ -209,8 +209,7 @@ bool vtkCompressedVolumeBuilder::Finish(vtkImageData* image)
   volume->SetDimensions(work->Dimensions);
   volume->SetOffset(this->Offset);
   volume->SetScale(this->Scale);
-  volume->SetRange(
-    volume->ToSample(work->Summary.GetRange()[0]), volume->ToSample(work->Summary.GetRange()[1]));
+  volume->SetStoredRange(work->Summary.GetRange()[0], work->Summary.GetRange()[1]);
   volume->SetHiddenSamples(work->Hidden.Mask);
   volume->SetScalarType(work->ScalarType);
   volume->SetArrayName(name.empty() ? "scalars" : name);

@@ -486,8 +486,7 @@ bool vtkImageZFPCompress::Compress(
   volume->SetDimensions(dims);
   volume->SetOffset(units.Offset);
   volume->SetScale(units.Scale);
-  volume->SetRange(
-    volume->ToSample(summary.GetRange()[0]), volume->ToSample(summary.GetRange()[1]));
+  volume->SetStoredRange(summary.GetRange()[0], summary.GetRange()[1]);
   volume->SetHiddenSamples(hidden.Mask);
   volume->SetHiddenCells(part.HiddenCells(input));
   volume->SetScalarType(array->GetDataType());

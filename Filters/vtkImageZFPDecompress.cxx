@@ -54,6 +54,19 @@ void ForEachHidden(
 }
 
 //------------------------------------------------------------------------------
+// The input's ghost array comes along with its structure: only of as many points, or cells, may it
+// be added to.
+void KeepGhosts(vtkDataSetAttributes* attributes, vtkIdType number)
+{
+  const char* const name = vtkDataSetAttributes::GhostArrayName();
+  vtkAbstractArray* const ghosts = attributes->GetAbstractArray(name);
+  if (ghosts && (ghosts->GetNumberOfTuples() != number || ghosts->GetNumberOfComponents() != 1))
+  {
+    attributes->RemoveArray(name);
+  }
+}
+
+//------------------------------------------------------------------------------
 // Hidden samples become NaN, and the ghost arrays tell of them and of hidden cells.
 void Hide(vtkCompressedVolume* volume, vtkDataArray* samples, vtkImageData* output)
 {
@@ -94,7 +107,10 @@ vtkSmartPointer<vtkDataArray> InSamplesUnits(vtkCompressedVolume* volume, vtkFlo
 {
   vtkNew<vtkDoubleArray> samples;
   samples->SetName(stored->GetName());
-  samples->SetNumberOfValues(stored->GetNumberOfValues());
+  if (!vtkZFPMemory::Allocate(samples.Get(), stored->GetNumberOfValues()))
+  {
+    return nullptr;
+  }
   std::transform(stored->GetPointer(0), stored->GetPointer(0) + stored->GetNumberOfValues(),
     samples->GetPointer(0), [volume](float value) { return volume->ToSample(value); });
   return samples;
@@ -154,6 +170,8 @@ int vtkImageZFPDecompress::RequestData(
   input->GetExtent(own);
   volume->Crop(own);
   output->SetExtent(volume->GetExtent());
+  KeepGhosts(output->GetPointData(), output->GetNumberOfPoints());
+  KeepGhosts(output->GetCellData(), output->GetNumberOfCells());
   if (!volume->Covers(input))
   {
     output->GenerateGhostArray(own); // the samples around a piece
@@ -163,11 +181,15 @@ int vtkImageZFPDecompress::RequestData(
   vtkNew<vtkFloatArray> stored;
   stored->SetName(volume->GetArrayName().c_str());
   const vtkTypeInt64 count = static_cast<vtkTypeInt64>(dims[0]) * dims[1] * dims[2];
-  if (!vtkZFPMemory::Allocate(stored.Get(), count))
+  const auto lacksMemory = [&](vtkTypeInt64 bytes)
   {
-    vtkErrorMacro("There is " << vtkZFPMemory::Objection("the values", dims, 4 * count) << ".");
+    vtkErrorMacro("There is " << vtkZFPMemory::Objection("the values", dims, bytes) << ".");
     this->SetErrorCode(vtkErrorCode::UserError);
     return 1;
+  };
+  if (!vtkZFPMemory::Allocate(stored.Get(), count))
+  {
+    return lacksMemory(4 * count);
   }
 
   const auto stream = vtkZFPBlocks::Align(volume->GetStream());
@@ -180,6 +202,10 @@ int vtkImageZFPDecompress::RequestData(
   if (volume->HasUnits())
   {
     samples = InSamplesUnits(volume, stored);
+    if (!samples)
+    {
+      return lacksMemory(8 * count);
+    }
   }
   vtkDataSetAttributes* attributes = output->GetPointData();
   if (volume->GetAssociation() == vtkCompressedVolume::CellData)

@@ -139,17 +139,16 @@ uint Quantize(vec2 range, vec2 coarse)
   float unit = coarse.y / 255.0 - coarse.x / 255.0;
   uint low = 0u;
   uint high = 255u;
-  if (unit > 0.0)
+  if (unit > 0.0 && !isinf(unit)) // a damaged stream may have infinite values
   {
-    low = min(uint(clamp((range.x / unit - coarse.x / unit), 0.0, 255.0)), 255u);
+    low = uint(clamp((range.x / unit - coarse.x / unit), 0.0, 255.0));
     high = min(uint(clamp(ceil(range.y / unit - coarse.x / unit), 0.0, 255.0)), 255u);
   }
-  // also where a damaged stream has infinite values, of which steps are not numbers
-  while (low > 0u && !(RangeLow(coarse, low) <= range.x))
+  while (low > 0u && RangeLow(coarse, low) > range.x)
   {
     --low;
   }
-  while (high < 255u && !(RangeHigh(coarse, high) >= range.y))
+  while (high < 255u && RangeHigh(coarse, high) < range.y)
   {
     ++high;
   }

@@ -115,7 +115,8 @@ def set_axes(image, axes, origin):
     """
     axes, origin = np.asarray(axes, float), np.asarray(origin, float)
     spacing = np.linalg.norm(axes, axis=0)
-    if not (np.isfinite(axes).all() and np.isfinite(origin).all() and (spacing > 0).all()):
+    finite = np.isfinite(axes).all() and np.isfinite(origin).all() and (spacing > 0).all()
+    if not finite or origin.shape != (3,):
         raise ValueError(
             f"the image's axes {axes.tolist()} or origin {origin.tolist()} are unusable"
         )

@@ -144,6 +144,22 @@ void ExpectRefusedWrapping()
   EXPECT(volume->GetErrorMessage().find("axis 0") != std::string::npos, volume->GetErrorMessage());
 }
 
+// An image without points, or cells, cannot be a part of what a stream covers.
+void TestEmptyPieces()
+{
+  for (const bool cells : { false, true })
+  {
+    const auto image = Compress(FloatImage(Size, cells));
+    const int* extent = image->GetExtent();
+    image->SetExtent(
+      extent[0], extent[1], extent[2] + 1, extent[2] + (cells ? 1 : 0), extent[4], extent[5]);
+    vtkNew<vtkCompressedVolume> volume;
+    EXPECT(!volume->Read(image), "empty");
+    const char* words = cells ? "no cells along axis 1" : "no points along axis 1";
+    EXPECT(volume->GetErrorMessage().find(words) != std::string::npos, volume->GetErrorMessage());
+  }
+}
+
 void TestHugeExtent()
 {
   const int most = std::numeric_limits<int>::max(), limit = 1 << 30;
@@ -188,6 +204,7 @@ int main()
   TestStatics();
   TestRejects();
   TestHugeExtent();
+  TestEmptyPieces();
   TestReadAndWrite();
   return test::Result();
 }

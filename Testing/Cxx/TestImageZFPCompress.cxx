@@ -7,6 +7,7 @@
 
 #include <vtkBitArray.h>
 #include <vtkCommand.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
 #include <vtkIntArray.h>
@@ -249,6 +250,62 @@ void TestProgressAndAbort()
   compress->Update();
   EXPECT(!vtkCompressedVolume::IsCompressed(compress->GetOutput()), "aborted");
 }
+//------------------------------------------------------------------------------
+// Ghost marks of another number than there are cells or points, or in no order: nothing is read
+// beyond them, and extents stay in order.
+void TestOddMarks()
+{
+  const auto marked = [](bool cells, vtkIdType number, std::initializer_list<vtkIdType> own)
+  {
+    const auto image = FloatImage({ 6, 7, 5 }, cells);
+    vtkNew<vtkUnsignedCharArray> marks;
+    marks->SetName(vtkDataSetAttributes::GhostArrayName());
+    marks->SetNumberOfValues(number);
+    marks->Fill(vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL);
+    for (const vtkIdType at : own)
+    {
+      marks->SetValue(at, 0);
+    }
+    image->GetCellData()->AddArray(marks);
+    vtkNew<vtkImageZFPCompress> compress;
+    const Errors errors(compress);
+    compress->SetInputData(image);
+    compress->Update();
+    EXPECT(errors.Texts.size() <= 1, errors.Describe());
+    return vtkSmartPointer<vtkImageData>(compress->GetOutput());
+  };
+  vtkNew<vtkCompressedVolume> volume;
+  for (const bool cells : { false, true })
+  {
+    const vtkIdType number = cells ? 6 * 7 * 5 : 5 * 6 * 4;
+    for (const vtkIdType other : { vtkIdType(0), vtkIdType(1), number - 1, number + 1 })
+    {
+      EXPECT(volume->Read(marked(cells, other, {})), volume->GetErrorMessage());
+      EXPECT(!volume->HidesAny(), "marks of " << other << " cells");
+    }
+    // the first own one lies further on in x and y than the last
+    const vtkIdType row = cells ? 6 : 5;
+    EXPECT(volume->Read(marked(cells, number, { 3 + 3 * row, number - 3 * row })),
+      volume->GetErrorMessage());
+  }
+}
+
+//------------------------------------------------------------------------------
+void TestLargestDoubles()
+{
+  const double most = std::numeric_limits<double>::max();
+  vtkNew<vtkDoubleArray> values;
+  values->SetNumberOfValues(64);
+  for (const double low : { -most, 0.0, most })
+  {
+    values->Fill(low);
+    values->SetValue(7, most);
+    const auto image = Compress(Image({ 4, 4, 4 }, values));
+    vtkNew<vtkCompressedVolume> volume;
+    EXPECT(volume->Read(image), low << ": " << volume->GetErrorMessage());
+    EXPECT(volume->GetRange()[1] == most, volume->GetRange()[1]);
+  }
+}
 }
 
 int main()
@@ -260,6 +317,8 @@ int main()
   TestOutput();
   TestErrors();
   TestTinyValues();
+  TestOddMarks();
+  TestLargestDoubles();
   TestPipeline();
   TestProgressAndAbort();
   return test::Result();

@@ -30,7 +30,8 @@ vtkSmartPointer<vtkImageData> PlainImage(Bytes& bytes)
   const auto values = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
   values->SetName(kinds & 2 ? "density" : nullptr);
   values->SetNumberOfComponents(1 + (kinds >> 2) % 3);
-  values->SetNumberOfTuples(tuples + (bytes.Byte() == 255 ? bytes.Below(3) - 1 : 0));
+  const int others = bytes.Byte() == 255 ? bytes.Below(3) - 1 : 0;
+  values->SetNumberOfTuples(std::max<vtkIdType>(tuples + others, 0));
   for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i)
   {
     for (int j = 0; j < values->GetNumberOfComponents(); ++j)

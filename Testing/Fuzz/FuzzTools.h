@@ -111,7 +111,10 @@ public:
   void Fill(unsigned char* target, std::size_t count)
   {
     std::size_t done = std::min(this->Left(), count);
-    done > 0 ? std::memcpy(target, this->Next, done) : std::memset(target, 0, count);
+    if (count > 0)
+    {
+      done > 0 ? std::memcpy(target, this->Next, done) : std::memset(target, 0, count);
+    }
     for (std::size_t more = 0; done > 0 && done < count; done += more)
     {
       more = std::min(done, count - done);

@@ -71,8 +71,9 @@ void CheckCrop(vtkCompressedVolume* volume, vtkImageData* whole, Bytes& bytes)
   volume->Crop(own);
   SampleExtent(volume, to);
   const auto part = DecompressWhole(volume);
-  auto* const all = vtkArrayDownCast<vtkFloatArray>(SamplesOf(whole));
-  auto* const cut = vtkArrayDownCast<vtkFloatArray>(SamplesOf(part));
+  vtkDataArray* const all = SamplesOf(whole);
+  vtkDataArray* const cut = SamplesOf(part);
+  const int bytesOfOne = all->GetDataTypeSize();
   vtkIdType next = 0;
   for (int z = to[4]; z <= to[5]; ++z)
   {
@@ -81,7 +82,8 @@ void CheckCrop(vtkCompressedVolume* volume, vtkImageData* whole, Bytes& bytes)
       const vtkIdType row = from[1] - from[0] + 1, rows = from[3] - from[2] + 1;
       const vtkIdType first = to[0] - from[0] + row * (y - from[2] + rows * (z - from[4]));
       const vtkIdType count = to[1] - to[0] + 1;
-      CHECK(std::memcmp(cut->GetPointer(next), all->GetPointer(first), 4 * count) == 0,
+      CHECK(std::memcmp(cut->GetVoidPointer(next), all->GetVoidPointer(first),
+              static_cast<std::size_t>(bytesOfOne) * count) == 0,
         "row " << y << " of slice " << z);
       next += count;
     }
@@ -113,7 +115,7 @@ void CheckContour(
   }
   if (!Update(contour) || values > 0 ||
     volume->GetAssociation() != vtkCompressedVolume::PointData || !volume->Covers(image) ||
-    volume->HidesAny())
+    volume->HidesAny() || volume->HasUnits())
   {
     return;
   }

@@ -27,7 +27,8 @@ struct FieldArray
 const FieldArray FieldArrays[] = { { "ProgIso.ZFP.Version", 1 }, { "ProgIso.ZFP.BlockBits", 1 },
   { "ProgIso.ZFP.Dimensions", 3 }, { "ProgIso.ZFP.Range", 2 }, { "ProgIso.ZFP.ScalarType", 1 },
   { "ProgIso.ZFP.ArrayName", 1 }, { "ProgIso.ZFP.Component", 1 }, { "ProgIso.ZFP.Association", 1 },
-  { "ProgIso.ZFP.Extent", 6 }, { "ProgIso.ZFP.Stream", 1 }, { "ProgIso.ZFP.HiddenSamples", 2 },
+  { "ProgIso.ZFP.Extent", 6 }, { "ProgIso.ZFP.Stream", 1 }, { "ProgIso.ZFP.Offset", 1 },
+  { "ProgIso.ZFP.Scale", 1 }, { "ProgIso.ZFP.HiddenSamples", 2 },
   { "ProgIso.ZFP.HiddenCells", 2 } };
 constexpr int NumberOfFieldArrays = sizeof(FieldArrays) / sizeof(*FieldArrays);
 
@@ -194,8 +195,8 @@ inline vtkSmartPointer<vtkImageData> HostileImage(Bytes& bytes)
     extent[2 * axis + 1] =
       static_cast<int>(std::min<vtkTypeInt64>(end, std::numeric_limits<int>::max()));
   }
-  // masks are more than the first version has
-  const int hidden = bytes.Below(4), version = 1 + (hidden != 0), blockBits = 9 + bytes.Below(2040),
+  // masks and units are more than the first version has
+  const int hidden = bytes.Below(8), version = 1 + (hidden != 0), blockBits = 9 + bytes.Below(2040),
             type = VTK_FLOAT, component = 0;
   const double range[2] = { -1.0, 1.0 };
   const vtkStdString name = "density";
@@ -222,6 +223,12 @@ inline vtkSmartPointer<vtkImageData> HostileImage(Bytes& bytes)
   if (hidden & 2)
   {
     AddHidden(fields, "ProgIso.ZFP.HiddenCells", blocks, bytes);
+  }
+  if (hidden & 4)
+  {
+    const double offset = bytes.Number(), scale = std::abs(bytes.Number());
+    AddArray<vtkDoubleArray>(fields, "ProgIso.ZFP.Offset", &offset, 1);
+    AddArray<vtkDoubleArray>(fields, "ProgIso.ZFP.Scale", &scale, 1);
   }
   if (kinds & 4) // a piece: the image is a part of what the stream covers
   {

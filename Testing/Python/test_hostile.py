@@ -7,6 +7,7 @@ import sys
 import numpy as np
 import progiso
 import pytest
+from oracle import zfp_reference
 from oracle.caster import Camera
 from scenes import CACHED, Scene, least_budget
 from support import PREFIX, blobs, make_image, metadata, noise, reference_values, vtk_messages
@@ -120,6 +121,29 @@ def test_colors(damaged):
         assert shows(shown, [value], **looks, **CACHED) == shows(shown, [value], **looks)
 
 
+def infinite_block(sign):
+    """Find bits of a block of the largest exponent that libzfp decodes to infinite values of one sign, among others."""
+    rng = np.random.default_rng(1)
+    while True:  # a few times
+        bits = np.append(np.array([255, 255], np.uint8), rng.integers(0, 256, 254, np.uint8))
+        values = zfp_reference.decode(bits.tobytes(), (4, 4, 4), 2048)
+        if np.isinf(values).any() and np.isfinite(np.maximum(-sign * values, 0)).all():
+            return bits
+
+
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_infinite_values_hide_no_other_surface(sign):
+    """A macrocell with a block of infinite values: its other blocks are shown as before."""
+    image = progiso.compress(make_image(blobs((16, 16, 16), 5)), 32)
+    camera = Camera((40.0, 45.0, 50.0), (7.5, 7.5, 7.5), view_angle=25.0)
+    before = Scene(image, 0.1, camera, SIZE).depth()
+    metadata(image, "Stream")[:256] = infinite_block(sign)
+    after = Scene(image, 0.1, camera, SIZE).depth()
+    unaffected = before < np.linalg.norm(np.subtract(camera.position, (4, 4, 4)))  # nearer than that block
+    assert unaffected.mean() > 0.1
+    assert np.array_equal(before[unaffected], after[unaffected])
+
+
 @pytest.mark.parametrize("low, high", [(0, 1e-30), (-1e30, 1e30), (7, 8), (-1e300, 1e300)])
 def test_lying_range(low, high):
     """The range of values is told to users; nothing is left out by it."""
@@ -212,6 +236,13 @@ def test_metadata(folder, case):
     ):
         with pytest.raises((ValueError, RuntimeError, OSError), match=words):
             call()
+
+
+def test_origin_of_two_numbers(folder):
+    header = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nspacings: 1 1 1\nspace origin: (1,2)\nencoding: raw\n\n"
+    (folder / "x.nrrd").write_bytes(header.encode() + bytes(8))
+    with pytest.raises(ValueError, match=r"origin \[1.0, 2.0\]"):
+        progiso.read(folder / "x.nrrd")
 
 
 def test_command_line(folder):
