@@ -35,6 +35,10 @@ def add_verify(command):
         help=f"to be cast at closed surfaces, 1e8 say (default: {Settings.rays:.0e}, "
         f"quick: {QUICK.rays:.0e})",
     )  # fmt: skip
+    command.add_argument(
+        "--jobs", metavar="N", type=_count, default=1,
+        help="processes that measure side by side: sooner done, but times may suffer (default: 1)",
+    )  # fmt: skip
     command.add_argument("--json", metavar="FILE", type=Path, help="write the rows as JSON")
     command.add_argument(
         "--output", metavar="PAGE.md", type=Path, help="write the table as Markdown"
@@ -43,7 +47,7 @@ def add_verify(command):
 
 
 def _count(text):
-    """A type of option: a number of rays, which may have an exponent."""
+    """A type of option: a number, of rays for example, which may have an exponent."""
     try:
         value = float(text)
     except ValueError:
@@ -63,7 +67,7 @@ def _verify(parsed):
     settings = QUICK if parsed.quick else Settings()
     if parsed.rays is not None:
         settings = replace(settings, rays=parsed.rays)
-    document = verify(listed, settings, _say(len(listed)))
+    document = verify(listed, settings, _say(len(listed)), parsed.jobs)
     print_table(document["rows"])
     if parsed.json is not None:
         write_json(document, parsed.json)
@@ -75,7 +79,7 @@ def _verify(parsed):
         raise RuntimeError(f"{len(failed)} of {len(listed)} cases failed: {', '.join(failed)}")
 
 
-def verify(listed, settings, started=None):
+def verify(listed, settings, started=None, jobs=1):
     """Measure cases; parameters as `table.measure` has them.
 
     Returns
@@ -87,7 +91,7 @@ def verify(listed, settings, started=None):
     document = new_document("verify", command, describe_machine())
     del document["measurements"]
     start, others = time.monotonic(), OtherProcesses()
-    document["rows"] = measure(listed, settings, started)
+    document["rows"] = measure(listed, settings, started, jobs)
     document["runs"][0].update(
         seconds=round(time.monotonic() - start, 1), complete=True, others_cores=others.cores()
     )
