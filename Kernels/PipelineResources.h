@@ -101,7 +101,7 @@ public:
   ///@}
 
   ///@{ Where nothing has gone wrong, run a stage on so many work groups, or on as many as the
-  ///control block says at an offset; a
+  /// control block says at an offset; a
   /// stage that reads the payload once for each of its segments.
   void Dispatch(Stage stage, std::int64_t groups);
   void DispatchIndirect(Stage stage, std::size_t controlOffset);

@@ -34,9 +34,8 @@ int vtkIsosurfaceVolume::Draw(vtkViewport* viewport)
 int vtkIsosurfaceVolume::RenderOpaqueGeometry(vtkViewport* viewport)
 {
   this->InvokeEvent(vtkCommand::StartEvent);
-  return vtkProgressiveIsosurfaceMapper::IsTranslucent(this->GetProperty())
-    ? 0
-    : this->Draw(viewport);
+  return vtkProgressiveIsosurfaceMapper::IsTranslucent(this->GetProperty()) ? 0
+                                                                            : this->Draw(viewport);
 }
 
 int vtkIsosurfaceVolume::RenderVolumetricGeometry(vtkViewport* viewport)

@@ -25,8 +25,12 @@
  * window that does not swap buffers, as when ParaView takes a screenshot) it completes the image. A
  * vtkWindowToImageFilter on an interactive window gives no such sign: let GetConverged() be true,
  * or the time allowance be large, before it captures. A change of camera, size, isovalue or input
- * restarts the image. The complete image does not depend on the speculation, the memory budget or
- * the number of passes per render.
+ * restarts the image. Where an observer of the window's AbortCheckEvent aborts a render it stops
+ * after the pass under way; the next goes on from there. The complete image does not depend on the
+ * speculation, the memory budget or the number of passes per render.
+ *
+ * Windows may be rendered by threads of their own. Where the GPU fails, for want of memory, say,
+ * that is an error, nothing is drawn, and the next render begins with nothing.
  *
  * Needs OpenGL 4.3. Add it to a scene with a vtkIsosurfaceVolume, which draws in the opaque pass; a
  * plain vtkVolume works as well but is drawn after translucent geometry.

@@ -1,8 +1,9 @@
-"""On a machine with a GPU: fill its memory, render, free it, render again. Prints JSON with a verdict; exits with 1 where it is bad.
+"""On a machine with a GPU: fill its memory, render, free it, render again. Prints JSON with a verdict, exits with 1 if bad.
 
-Run it with whatever Python has progiso: ``.venv/bin/python Testing/gpu_faults.py``, or ``progiso-bundle/run Testing/gpu_faults.py``.
-Where the `python3` on the path has torch with CUDA that holds the memory (as another program would), else textures do. With its memory
-full the GPU may still serve an image, from the host's; what must not happen is a wrong image, a crash, or no good image afterwards.
+Run it with a Python that has progiso: ``.venv/bin/python Testing/gpu_faults.py``, or ``progiso-bundle/run Testing/gpu_faults.py``.
+Where the `python3` on the path has torch with CUDA that holds the memory (as another program would), else textures do. With
+its memory full the GPU may still serve an image, from the host's; what must not happen is a wrong image, a crash, or no good
+image afterwards.
 """
 
 import argparse

@@ -73,7 +73,7 @@ def measure_soak(field, settings):
     Returns
     -------
     dict
-        ``frames``; ``samples``, lists of the same length: ``frame``, ``rss`` (the process's memory),
+        ``frames``; ``samples``, lists of the same length: ``frame``, ``rss`` (main memory),
         ``mapper`` (what the mapper says that it holds on the GPU) and ``gpu`` (memory in use by
         nvidia-smi; None without), all at rest and in bytes, and ``peak``, the mapper's largest
         since the sample before; ``warm_up``, the first frame that counts; ``growth``: {``rss``,
@@ -167,7 +167,8 @@ class _Walk:
         self.view.renderer.AddViewProp(self._keeper)
         self.view.render_from(self._rest)
         self._keeper.VisibilityOff()
-        self._least = self._least_budget()
+        self._least = 0
+        self._warm_up()
 
     def _make_obstacle(self):
         """A ball in the middle of the volume."""
@@ -179,16 +180,18 @@ class _Walk:
         actor.SetMapper(mapper)
         return actor
 
-    def _least_budget(self):
-        """The least memory that any look can be rendered with, each rendered once at full size."""
-        least = []
-        for whole in (True, False):
+    def _warm_up(self):
+        """Render every look once, at full size: decoded as a whole, with a cache, and within the
+        least memory that any of them can be rendered with."""
+        for whole, limited in ((True, False), (False, False), (False, True)):
             self.view.mapper.SetDecodeWholeVolume(whole)
+            self.view.mapper.SetMemoryBudget(self._least if limited else 0)
             for name in _LOOKS:
                 self._look(name)
                 self.view.render_from(self._rest)
-                least.append(self.view.statistics()["memory"]["least_budget"])
-        return max(least)
+                least = self.view.statistics()["memory"]["least_budget"]
+                self._least = max(self._least, least)
+        self.view.mapper.SetMemoryBudget(0)
 
     # ---- a frame
 

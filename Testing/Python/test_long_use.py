@@ -1,6 +1,7 @@
 """Many mappers, many volumes, many windows: what they leave behind, what they share, and that none disturbs another."""
 
 import gc
+import sys
 import threading
 
 import numpy as np
@@ -14,6 +15,8 @@ from stages import Stage
 from support import blobs, make_image
 from test_conformance import BLUE, GREEN, NESTED, OPAQUE, RED, show
 from test_lifecycle import objects
+from test_paraview import under_x
+from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
 MAPPERS, VOLUMES, FRAMES = 200, 50, 12
 
@@ -125,3 +128,47 @@ def test_each_thread_has_its_window(image):
         thread.join()
     for ours, theirs in zip(found, expected):
         assert ours is not None and all(np.array_equal(a, b) for a, b in zip(ours, theirs))
+
+
+SHARED = """
+import sys
+sys.path[:0] = {path!r}
+import numpy as np
+import progiso
+from scenes import CACHED
+from stages import Stage
+from support import blobs, make_image
+from test_conformance import NESTED, OPAQUE, show
+from test_lifecycle import objects
+
+image = progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), 8)
+stages = [Stage(True), Stage(True)]
+stages[1].window.SetSharedRenderWindow(stages[0].window)
+for stage, surfaces in zip(stages, (OPAQUE, NESTED)):
+    show(stage, image, surfaces, **CACHED).GetProperty().ShadeOn()
+pictures = [stage.picture() for stage in stages]
+names = [objects(stage.window)["Buffer"] for stage in stages]
+assert names[0] == names[1] > 20, "they share nothing"
+
+
+def check():
+    for stage, picture in zip(stages, pictures):
+        assert np.array_equal(stage.picture(), picture)
+
+
+check()
+for stage in stages:
+    stage.volumes[0].ReleaseGraphicsResources(stage.window)
+    check()
+    stage.window.Finalize()
+    check()
+print("good")
+"""
+
+
+def test_windows_share_their_contexts():
+    """As VTK's windows do under X: the names of one's buffers are known in the other, and nobody deletes the other's."""
+    if "OS" not in vtkRenderWindow().GetClassName():
+        pytest.skip("this wants a display of Mesa's")
+    program = SHARED.format(path=[path for path in sys.path if path])
+    assert "good" in under_x(sys.executable, "-c", program)
