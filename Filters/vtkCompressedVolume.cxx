@@ -492,8 +492,11 @@ std::string vtkCompressedVolume::ReadHidden(vtkImageData* image)
                                       : std::string("does not hold numbers");
     return error.empty() ? error : std::string("its field data array ") + name + " " + error;
   };
-  const std::string error = read(HiddenSamplesName, this->HiddenSamples);
-  return error.empty() ? read(HiddenCellsName, this->HiddenCells) : error;
+  std::string error = read(HiddenSamplesName, this->HiddenSamples);
+  error = error.empty() ? read(HiddenCellsName, this->HiddenCells) : error;
+  return error.empty() && this->Association == CellData && !this->HiddenCells.IsEmpty()
+    ? std::string(HiddenCellsName) + " is there, but of cell data samples are hidden, not cells"
+    : error;
 }
 
 //------------------------------------------------------------------------------

@@ -363,6 +363,15 @@ def test_a_mask_that_is_none(array):
         progiso.decompress(volume)
 
 
+def test_cells_of_cell_data_are_samples():
+    volume = progiso.compress(make_image(noise((9, 9, 9)), cells=True))
+    array = spoiled([0, 1])
+    array.SetName("ProgIso.ZFP.HiddenCells")
+    volume.GetFieldData().AddArray(array)
+    with pytest.raises(RuntimeError, match="HiddenCells"):
+        progiso.decompress(volume)
+
+
 # --- triangles ---------------------------------------------------------------------------------------------------------------
 
 
