@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkProgressiveIsosurfaceMapper.h"
 
+#include "CompressedInput.h"
 #include "ProgressivePipeline.h"
 #include "SceneTranslation.h"
 #include "vtkProgressiveIsosurfaceStatistics.h"
@@ -16,7 +17,6 @@
 #include "vtkFloatArray.h"
 #include "vtkHardwareSelector.h"
 #include "vtkImageData.h"
-#include "vtkImageZFPCompress.h"
 #include "vtkInformation.h"
 #include "vtkInformationObjectBaseVectorKey.h"
 #include "vtkLight.h"
@@ -47,7 +47,6 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -71,45 +70,18 @@ std::uint64_t ContextOf(vtkOpenGLRenderWindow* window)
     : static_cast<std::uint64_t>(window->GetContextCreationTime());
 }
 
-// The pipeline's view of a stream; words of 64 bits, as zfp writes them.
-CompressedStream DescribeStream(vtkCompressedVolume* source)
+// The first array that is not VTK's ghost marker; null where there is none.
+vtkDataArray* FirstArray(vtkDataSetAttributes* attributes)
 {
-  CompressedStream stream;
-  stream.Data = source->GetStream()->GetPointer(0);
-  stream.Size = source->GetStream()->GetNumberOfValues() / 8 * 8;
-  stream.BlockBits = source->GetBlockBits();
-  return stream;
-}
-
-// The runs of a mask as Buffers.glsl has them.
-std::vector<std::uint32_t> DescribeHidden(const vtkBlockMask& mask)
-{
-  const std::vector<vtkBlockMask::Run>& runs = mask.GetRuns();
-  std::vector<std::uint32_t> words;
-  if (!runs.empty())
+  for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
   {
-    words.reserve(1 + 3 * runs.size());
-    words.push_back(static_cast<std::uint32_t>(runs.size()));
-    for (const vtkBlockMask::Run& run : runs)
+    vtkDataArray* array = attributes->GetArray(i);
+    if (array && array != attributes->GetArray(vtkDataSetAttributes::GhostArrayName()))
     {
-      words.push_back(static_cast<std::uint32_t>(run.First));
-    }
-    for (const vtkBlockMask::Run& run : runs)
-    {
-      words.push_back(static_cast<std::uint32_t>(run.Bits));
-      words.push_back(static_cast<std::uint32_t>(run.Bits >> 32));
+      return array;
     }
   }
-  return words;
-}
-
-PipelineVolume DescribeVolume(vtkCompressedVolume* source)
-{
-  PipelineVolume volume;
-  volume.Values = DescribeStream(source);
-  volume.Hidden = DescribeHidden(source->GetCellsWithoutSurface());
-  source->GetDimensions(volume.Samples);
-  return volume;
+  return nullptr;
 }
 
 // 256 colours over a table's range, which is in the units of the stream there, as in Shading.glsl.
@@ -223,20 +195,9 @@ public:
   const vtkWindow* WindowInUse = nullptr; ///< the same, also while it is being destroyed
   std::uint64_t Context = 0;              ///< its, where the graphics resources are
 
-  // A volume, compressed; what it was made from, when, and how: image, array, rate, component,
-  // whether NaN is hidden.
-  struct Compressed
-  {
-    using Key =
-      std::tuple<vtkImageData*, vtkMTimeType, vtkDataArray*, vtkMTimeType, double, int, bool>;
-    vtkSmartPointer<vtkImageData> Image; // the input, or what it was compressed to
-    vtkNew<vtkCompressedVolume> Volume;
-    Key Source;
-  };
-  Compressed Values;
-  Compressed Colors;       // no image: another volume gives no colours
-  vtkTimeStamp VolumeTime; // of both; the pipeline has those of HandOverTime
-  vtkTimeStamp HandOverTime;
+  CompressedInput Values;
+  CompressedInput Colors;    // of no image: another volume gives no colours
+  vtkTimeStamp HandOverTime; // of both, to the pipeline
   std::vector<float> Palette;
 
   SceneBlock Scene;
@@ -256,11 +217,8 @@ public:
 private:
   vtkDataArray* FindArray(vtkImageData* image, bool& cellData);
   vtkDataArray* FindColorArray(vtkImageData* image);
-  vtkSmartPointer<vtkImageData> Compress(
-    vtkImageData* image, vtkDataArray* array, bool cellData, int component);
   bool Take(
-    vtkImageData* image, vtkDataArray* array, bool cellData, int component, Compressed& into);
-  void Release(Compressed& volume);
+    vtkImageData* image, vtkDataArray* array, bool cellData, int component, CompressedInput& into);
   bool UpdateValues(vtkImageData* image);
   bool UpdateColors(vtkImageData* image);
   std::pair<int, vtkMTimeType> FindObstacles(vtkRenderer* renderer, vtkVolume* volume) const;
@@ -338,79 +296,23 @@ vtkDataArray* vtkProgressiveIsosurfaceMapper::Internals::FindArray(
   vtkDataArray* array = vtkAbstractMapper::GetScalars(image, this->Owner->ScalarMode,
     this->Owner->ArrayAccessMode, this->Owner->ArrayId, this->Owner->ArrayName, cellFlag);
   cellData = cellFlag == 1;
-  if (!array && this->Owner->ScalarMode == VTK_SCALAR_MODE_DEFAULT &&
-    image->GetPointData()->GetNumberOfArrays() > 0)
+  if (!array && this->Owner->ScalarMode == VTK_SCALAR_MODE_DEFAULT)
   {
-    array =
-      image->GetPointData()->GetArray(0); // no active scalars: the first array, as the filters do
+    // no active scalars: the first array, as the filters do
+    array = FirstArray(image->GetPointData());
+    cellData = !array;
+    array = array ? array : FirstArray(image->GetCellData());
   }
   return array;
 }
 
-vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceMapper::Internals::Compress(
-  vtkImageData* image, vtkDataArray* array, bool cellData, int component)
-{
-  vtkNew<vtkImageData> single;
-  single->CopyStructure(image);
-  if (cellData)
-  {
-    single->GetCellData()->SetScalars(array);
-  }
-  else
-  {
-    single->GetPointData()->SetScalars(array);
-  }
-  // of a piece of a volume, or of what is hidden
-  single->GetPointData()->AddArray(image->GetPointGhostArray());
-  single->GetCellData()->AddArray(image->GetCellGhostArray());
-  vtkNew<vtkImageZFPCompress> compress;
-  compress->SetInputData(single);
-  compress->SetInputArrayToProcess(0, 0, 0,
-    cellData ? vtkDataObject::FIELD_ASSOCIATION_CELLS : vtkDataObject::FIELD_ASSOCIATION_POINTS,
-    vtkDataSetAttributes::SCALARS);
-  compress->SetRate(this->Owner->Rate);
-  compress->SetComponent(component);
-  compress->SetMaskNonFinite(this->Owner->MaskNonFinite);
-  compress->Update();
-  return compress->GetOutput();
-}
-
-void vtkProgressiveIsosurfaceMapper::Internals::Release(Compressed& volume)
-{
-  if (volume.Image)
-  {
-    this->VolumeTime.Modified();
-  }
-  volume.Image = nullptr;
-  volume.Source = Compressed::Key();
-}
-
-// Makes sure that `into` is of this image; compresses an array of a plain one.
+// Makes sure that `into` is of this image, or of its array where it is plain.
 bool vtkProgressiveIsosurfaceMapper::Internals::Take(
-  vtkImageData* image, vtkDataArray* array, bool cellData, int component, Compressed& into)
+  vtkImageData* image, vtkDataArray* array, bool cellData, int component, CompressedInput& into)
 {
-  // of the mapper's own parameters only these make a plain image another volume
-  const Compressed::Key key = { image, image->GetMTime(), array, array ? array->GetMTime() : 0,
-    array ? this->Owner->Rate : 0.0, array ? component : 0, array && this->Owner->MaskNonFinite };
-  if (into.Image && key == into.Source)
-  {
-    return true;
-  }
-  this->Release(into);
-  vtkSmartPointer<vtkImageData> volume = image;
-  if (array)
-  {
-    volume = this->Compress(image, array, cellData, component);
-  }
-  if (!into.Volume->Read(volume))
-  {
-    return array ? false // the filter has told why
-                 : this->Report(into.Volume->GetErrorMessage());
-  }
-  into.Image = volume;
-  into.Source = key;
-  this->VolumeTime.Modified();
-  return true;
+  const CompressedInput::Choice choice = { image, array, cellData, component, this->Owner->Rate,
+    this->Owner->MaskNonFinite };
+  return into.Take(choice) || (!into.GetError().empty() && this->Report(into.GetError()));
 }
 
 bool vtkProgressiveIsosurfaceMapper::Internals::UpdateValues(vtkImageData* image)
@@ -430,7 +332,7 @@ vtkDataArray* vtkProgressiveIsosurfaceMapper::Internals::FindColorArray(vtkImage
 {
   const char* name = this->Owner->ColorArrayName;
   vtkDataSetAttributes* attributes =
-    this->Values.Volume->GetAssociation() == vtkCompressedVolume::CellData
+    this->Values.GetVolume()->GetAssociation() == vtkCompressedVolume::CellData
     ? static_cast<vtkDataSetAttributes*>(image->GetCellData())
     : image->GetPointData();
   vtkDataArray* array = attributes->GetArray(name);
@@ -451,7 +353,7 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateColors(vtkImageData* image
   const bool connected = self->GetNumberOfInputConnections(1) > 0;
   if (!connected && !named)
   {
-    this->Release(this->Colors);
+    this->Colors.Release();
     return true;
   }
   if (connected)
@@ -460,7 +362,7 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateColors(vtkImageData* image
     image = vtkImageData::SafeDownCast(self->GetInputDataObject(1, 0));
   }
   const bool compressed = connected && image && vtkCompressedVolume::IsCompressed(image);
-  bool cellData = this->Values.Volume->GetAssociation() == vtkCompressedVolume::CellData;
+  bool cellData = this->Values.GetVolume()->GetAssociation() == vtkCompressedVolume::CellData;
   vtkDataArray* array = nullptr;
   if (image && !compressed)
   {
@@ -474,8 +376,8 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateColors(vtkImageData* image
   {
     return false;
   }
-  const int* values = this->Values.Volume->GetDimensions();
-  const int* colors = this->Colors.Volume->GetDimensions();
+  const int* values = this->Values.GetVolume()->GetDimensions();
+  const int* colors = this->Colors.GetVolume()->GetDimensions();
   return std::equal(values, values + 3, colors) ||
     this->Report("the colours' volume has other dimensions than the one that is rendered: resample "
                  "it to the same");
@@ -534,16 +436,16 @@ void vtkProgressiveIsosurfaceMapper::Internals::ReleaseGraphics(vtkWindow* windo
   this->HaveScene = false;
 }
 
-// The stream stays here, in Volume, for as long as the pipeline may want to upload it.
+// The stream stays here, in Values, for as long as the pipeline may want to upload it.
 void vtkProgressiveIsosurfaceMapper::Internals::HandOverVolume()
 {
-  if (this->HandOverTime < this->VolumeTime)
+  if (this->HandOverTime < std::max(this->Values.GetTime(), this->Colors.GetTime()))
   {
     this->HaveScene = false;
-    PipelineVolume volume = DescribeVolume(this->Values.Volume);
-    if (this->Colors.Image)
+    PipelineVolume volume = this->Values.DescribeVolume();
+    if (this->Colors.GetImage())
     {
-      volume.Colors = DescribeStream(this->Colors.Volume);
+      volume.Colors = this->Colors.DescribeStream();
     }
     this->Pipeline.SetVolume(volume);
     this->HandOverTime.Modified();
@@ -578,7 +480,7 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdatePalette(vtkVolumeProperty*
   vtkScalarsToColors* table = this->Owner->ColorLookupTable ? this->Owner->ColorLookupTable
                                                             : property->GetRGBTransferFunction();
   const std::vector<float> palette =
-    this->Colors.Image ? MakePalette(table, this->Colors.Volume) : std::vector<float>();
+    this->Colors.GetImage() ? MakePalette(table, this->Colors.GetVolume()) : std::vector<float>();
   const bool same = palette == this->Palette;
   if (!same || !this->HaveScene)
   {
@@ -600,7 +502,7 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(
   renderer->GetTiledSizeAndOrigin(&this->ViewSize[0], &this->ViewSize[1], &origin[0], &origin[1]);
   const int viewport[4] = { place[2], place[3], place[0], place[1] };
   SceneBlock scene = TranslateScene(
-    renderer, volume, this->Owner, this->Values.Image, this->Values.Volume, viewport);
+    renderer, volume, this->Owner, this->Values.GetImage(), this->Values.GetVolume(), viewport);
   if (!HasRays(scene))
   {
     return this->Report("cannot show its input: the image's spacing, origin and directions, the "
@@ -740,7 +642,7 @@ void vtkProgressiveIsosurfaceMapper::Internals::Select(
   vtkIdType cells = 1;
   for (int axis = 0; axis < 3; ++axis)
   {
-    cells *= this->Values.Volume->GetDimensions()[axis] - 1;
+    cells *= this->Values.GetVolume()->GetDimensions()[axis] - 1;
   }
   selector->UpdateMaximumCellId(cells);
   const DrawingState drawing(window->GetState(), false);
@@ -1077,7 +979,7 @@ bool vtkProgressiveIsosurfaceMapper::GetHit(int x, int y, double position[3], do
   EyePosition(scene, x, y, t, point);
   impl->EyeToWorld->MultiplyPoint(point, point);
   std::copy(point, point + 3, position);
-  isovalue = impl->Values.Volume->ToSample(
+  isovalue = impl->Values.GetVolume()->ToSample(
     double(scene.Isovalues[hit.Surface][0]) + scene.Isovalues[hit.Surface][1]);
   return true;
 }

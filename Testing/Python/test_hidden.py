@@ -435,15 +435,17 @@ def test_ghosts_in_pyvista():
     assert np.array_equal(np.isfinite(progiso.depth(prop.GetMapper())), np.isfinite(scene.depth()))
 
 
-def test_the_default_array_is_no_ghost_array():
-    image = blank(make_image(noise((8, 8, 8))), speckles((8, 8, 8)))
-    image.GetPointData().SetActiveScalars(None)
-    names = [image.GetPointData().GetArrayName(i) for i in range(2)]
-    ghosts = image.GetPointData().GetArray("vtkGhostType")
-    image.GetPointData().RemoveArray("vtkGhostType")
-    values = image.GetPointData().GetArray("field")
-    image.GetPointData().RemoveArray("field")
-    image.GetPointData().AddArray(ghosts)
-    image.GetPointData().AddArray(values)
-    assert sorted(names) == ["field", "vtkGhostType"]
+@pytest.mark.parametrize("cells", [False, True])
+def test_the_default_array_is_no_ghost_array(cells):
+    """Where no scalars are active the first array counts, in the filter and in the mapper."""
+    image = make_image(noise((9, 9, 9)), cells=cells)
+    data = image.GetCellData() if cells else image.GetPointData()
+    values = data.GetScalars()
+    data.RemoveArray("field")
+    blank(image, cells=speckles((9, 9, 9))) if cells else blank(image, points=speckles((9, 9, 9)))
+    data.AddArray(values)
+    assert data.GetArrayName(0) == "vtkGhostType" and data.GetScalars() is None
     assert progiso.describe(progiso.compress(image))["array"] == "field"
+    depth = Scene(image, 0.0, Camera((4, 4, 30), (4, 4, 4)), SIZE).depth()
+    assert np.array_equal(depth, Scene(progiso.compress(image), 0.0, Camera((4, 4, 30), (4, 4, 4)), SIZE).depth())
+    assert np.isfinite(depth).any()
