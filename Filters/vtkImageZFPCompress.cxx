@@ -197,6 +197,19 @@ bool Contains(vtkDataSetAttributes* attributes, vtkDataArray* array)
 }
 
 //------------------------------------------------------------------------------
+vtkDataArray* vtkImageZFPCompress::FindDefaultArray(vtkImageData* image, int& association)
+{
+  vtkDataArray* array = DefaultArray(image->GetPointData());
+  association = vtkCompressedVolume::PointData;
+  if (!array)
+  {
+    array = DefaultArray(image->GetCellData());
+    association = vtkCompressedVolume::CellData;
+  }
+  return array;
+}
+
+//------------------------------------------------------------------------------
 double vtkImageZFPCompress::GetActualRate() const
 {
   return vtkCompressedVolume::BlockBitsForRate(this->Rate) / 64.0;
@@ -247,8 +260,7 @@ struct vtkImageZFPCompress::Part
   int Size[3];    // samples in the stream, per axis
 
   void Find(vtkImageData* input, vtkInformation* information);
-  void ToSamples(const int extent[6], int samples[6]) const;
-  vtkSmartPointer<vtkDataArray> Samples(vtkDataArray* array) const;
+  vtkSmartPointer<vtkDataArray> Cut(vtkDataArray* array, int association) const;
   vtkSmartPointer<vtkUnsignedCharArray> HiddenSamples(vtkImageData* input) const;
   vtkBlockMask HiddenCells(vtkImageData* input) const;
 };
@@ -276,22 +288,17 @@ void vtkImageZFPCompress::Part::Find(vtkImageData* input, vtkInformation* inform
 }
 
 //------------------------------------------------------------------------------
-void vtkImageZFPCompress::Part::ToSamples(const int extent[6], int samples[6]) const
-{
-  std::copy_n(extent, 6, samples);
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    samples[2 * axis + 1] -= this->Association == vtkCompressedVolume::CellData ? 1 : 0;
-  }
-}
-
-//------------------------------------------------------------------------------
-// Those of an array that are compressed.
-vtkSmartPointer<vtkDataArray> vtkImageZFPCompress::Part::Samples(vtkDataArray* array) const
+// What of an array of points, or of cells, the stream covers.
+vtkSmartPointer<vtkDataArray> vtkImageZFPCompress::Part::Cut(
+  vtkDataArray* array, int association) const
 {
   int given[6], covered[6];
-  this->ToSamples(this->Input, given);
-  this->ToSamples(this->Covered, covered);
+  for (int i = 0; i < 6; ++i)
+  {
+    const int fewer = association == vtkCompressedVolume::CellData ? i % 2 : 0;
+    given[i] = this->Input[i] - fewer;
+    covered[i] = this->Covered[i] - fewer;
+  }
   return CutOut(array, given, covered);
 }
 
@@ -307,7 +314,7 @@ vtkSmartPointer<vtkUnsignedCharArray> vtkImageZFPCompress::Part::HiddenSamples(
     flags = HideCells(flags,
       FindHiding(input->GetCellGhostArray(), input->GetNumberOfCells(), HidingCell), this->Input);
   }
-  return flags ? vtkUnsignedCharArray::SafeDownCast(this->Samples(flags)) : nullptr;
+  return flags ? vtkUnsignedCharArray::SafeDownCast(this->Cut(flags, this->Association)) : nullptr;
 }
 
 //------------------------------------------------------------------------------
@@ -319,13 +326,9 @@ vtkBlockMask vtkImageZFPCompress::Part::HiddenCells(vtkImageData* input) const
   {
     return vtkBlockMask();
   }
-  int given[6], covered[6];
-  for (int i = 0; i < 6; ++i)
-  {
-    given[i] = this->Input[i] - i % 2;
-    covered[i] = this->Covered[i] - i % 2;
-  }
-  return MaskCells(vtkUnsignedCharArray::SafeDownCast(CutOut(flags, given, covered)), this->Size);
+  return MaskCells(
+    vtkUnsignedCharArray::SafeDownCast(this->Cut(flags, vtkCompressedVolume::CellData)),
+    this->Size);
 }
 
 //------------------------------------------------------------------------------
@@ -381,10 +384,11 @@ vtkDataArray* vtkImageZFPCompress::FindArray(
     choice->Has(vtkDataObject::FIELD_NAME()) ? choice->Get(vtkDataObject::FIELD_NAME()) : nullptr;
   const bool chosen = name && *name; // ParaView sends an empty name for "none chosen yet"
   vtkDataArray* array = this->GetInputArrayToProcess(0, inputVector);
+  association = array && Contains(input->GetCellData(), array) ? vtkCompressedVolume::CellData
+                                                               : vtkCompressedVolume::PointData;
   if (!array && !chosen)
   {
-    array = DefaultArray(input->GetPointData());
-    array = array ? array : DefaultArray(input->GetCellData());
+    array = FindDefaultArray(input, association);
   }
   if (!array && !chosen && vtkCompressedVolume::IsCompressed(input))
   {
@@ -396,8 +400,6 @@ vtkDataArray* vtkImageZFPCompress::FindArray(
       "There is no " << (chosen ? "point or cell array '" + std::string(name) + "'" : "array")
                      << " to compress; the input's arrays: " << ArrayNames(input) << ".");
   }
-  association = array && Contains(input->GetCellData(), array) ? vtkCompressedVolume::CellData
-                                                               : vtkCompressedVolume::PointData;
   return array;
 }
 
@@ -438,7 +440,7 @@ bool vtkImageZFPCompress::Compress(
   vtkImageData* input, vtkDataArray* array, const Part& part, vtkImageData* output)
 {
   const int* dims = part.Size;
-  const vtkSmartPointer<vtkDataArray> samples = part.Samples(array);
+  const vtkSmartPointer<vtkDataArray> samples = part.Cut(array, part.Association);
   const vtkSmartPointer<vtkUnsignedCharArray> flags = part.HiddenSamples(input);
   vtkZFPBlocks::Hidden hidden;
   hidden.Flags = flags ? flags->GetPointer(0) : nullptr;

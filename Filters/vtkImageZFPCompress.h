@@ -68,6 +68,12 @@ public:
   ///@}
 
   /**
+   * The array that is compressed where none is chosen, as the class's description tells, and its
+   * association, vtkCompressedVolume::PointData or CellData. Null where an image has none.
+   */
+  static vtkDataArray* FindDefaultArray(vtkImageData* image, int& association);
+
+  /**
    * Rate that zfp uses for GetRate(), in bits per sample: a multiple of 1/64, at least 9/64. 0 when
    * the rate is out of range.
    */

@@ -104,16 +104,6 @@ bool CompressedInput::Take(const Choice& choice)
   return true;
 }
 
-CompressedStream CompressedInput::DescribeStream() const
-{
-  return ::DescribeStream(this->Volume);
-}
-
-PipelineVolume CompressedInput::DescribeVolume() const
-{
-  return ::DescribeVolume(this->Volume);
-}
-
 // Words of 64 bits, as zfp writes them.
 CompressedStream DescribeStream(vtkCompressedVolume* volume)
 {

@@ -50,11 +50,6 @@ public:
   /// When it became another volume, or none.
   vtkMTimeType GetTime() const { return this->Time; }
 
-  ///@{ What the pipeline uploads; it stays here.
-  CompressedStream DescribeStream() const;
-  PipelineVolume DescribeVolume() const;
-  ///@}
-
 private:
   /// Image, array and their times, and what else makes a plain image another volume.
   using Key =
@@ -67,7 +62,7 @@ private:
   std::string Error;
 };
 
-///@{ The same of a compressed volume that is nobody's input.
+///@{ What the pipeline uploads of a compressed volume, which has to stay where it is.
 CompressedStream DescribeStream(vtkCompressedVolume* volume);
 PipelineVolume DescribeVolume(vtkCompressedVolume* volume);
 ///@}

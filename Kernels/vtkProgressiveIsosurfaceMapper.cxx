@@ -17,6 +17,7 @@
 #include "vtkFloatArray.h"
 #include "vtkHardwareSelector.h"
 #include "vtkImageData.h"
+#include "vtkImageZFPCompress.h"
 #include "vtkInformation.h"
 #include "vtkInformationObjectBaseVectorKey.h"
 #include "vtkLight.h"
@@ -68,20 +69,6 @@ std::uint64_t ContextOf(vtkOpenGLRenderWindow* window)
   return window->IsA("vtkExternalOpenGLRenderWindow")
     ? static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(window))
     : static_cast<std::uint64_t>(window->GetContextCreationTime());
-}
-
-// The first array that is not VTK's ghost marker; null where there is none.
-vtkDataArray* FirstArray(vtkDataSetAttributes* attributes)
-{
-  for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* array = attributes->GetArray(i);
-    if (array && array != attributes->GetArray(vtkDataSetAttributes::GhostArrayName()))
-    {
-      return array;
-    }
-  }
-  return nullptr;
 }
 
 // 256 colours over a table's range, which is in the units of the stream there, as in Shading.glsl.
@@ -298,10 +285,9 @@ vtkDataArray* vtkProgressiveIsosurfaceMapper::Internals::FindArray(
   cellData = cellFlag == 1;
   if (!array && this->Owner->ScalarMode == VTK_SCALAR_MODE_DEFAULT)
   {
-    // no active scalars: the first array, as the filters do
-    array = FirstArray(image->GetPointData());
-    cellData = !array;
-    array = array ? array : FirstArray(image->GetCellData());
+    int association = vtkCompressedVolume::PointData;
+    array = vtkImageZFPCompress::FindDefaultArray(image, association);
+    cellData = association == vtkCompressedVolume::CellData;
   }
   return array;
 }
@@ -442,10 +428,10 @@ void vtkProgressiveIsosurfaceMapper::Internals::HandOverVolume()
   if (this->HandOverTime < std::max(this->Values.GetTime(), this->Colors.GetTime()))
   {
     this->HaveScene = false;
-    PipelineVolume volume = this->Values.DescribeVolume();
+    PipelineVolume volume = DescribeVolume(this->Values.GetVolume());
     if (this->Colors.GetImage())
     {
-      volume.Colors = this->Colors.DescribeStream();
+      volume.Colors = DescribeStream(this->Colors.GetVolume());
     }
     this->Pipeline.SetVolume(volume);
     this->HandOverTime.Modified();
