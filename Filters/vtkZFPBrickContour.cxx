@@ -164,18 +164,25 @@ bool vtkZFPBrickContour::IsShared(const EdgePlace& place, const vtkZFPBricks::Bo
 }
 
 //------------------------------------------------------------------------------
+bool vtkZFPBrickContour::IsHidden(const int cell[3]) const
+{
+  const int* const dims = this->Bricks.GetDimensions();
+  const int blocks[3] = { (dims[0] + 3) / 4, (dims[1] + 3) / 4, (dims[2] + 3) / 4 };
+  return this->Hidden->Hides(cell, blocks);
+}
+
+//------------------------------------------------------------------------------
 // Whether any of the cells around an edge is visible.
 bool vtkZFPBrickContour::IsVisible(const EdgePlace& place) const
 {
   const int* const dims = this->Bricks.GetDimensions();
-  const int blocks[3] = { (dims[0] + 3) / 4, (dims[1] + 3) / 4, (dims[2] + 3) / 4 };
   for (int side = 0; side < 4; ++side)
   {
     int cell[3] = { place.Sample[0], place.Sample[1], place.Sample[2] };
     cell[(place.Axis + 1) % 3] -= side & 1;
     cell[(place.Axis + 2) % 3] -= side >> 1;
     const auto exists = [&](int axis) { return cell[axis] >= 0 && cell[axis] + 1 < dims[axis]; };
-    if (exists(0) && exists(1) && exists(2) && !this->Hidden->Hides(cell, blocks))
+    if (exists(0) && exists(1) && exists(2) && !this->IsHidden(cell))
     {
       return true;
     }
@@ -190,7 +197,6 @@ bool vtkZFPBrickContour::IsInVisibleCell(
   vtkPolyData* surface, const vtkIdType corners[3], const vtkZFPBricks::Box& box) const
 {
   const int* const dims = this->Bricks.GetDimensions();
-  const int blocks[3] = { (dims[0] + 3) / 4, (dims[1] + 3) / 4, (dims[2] + 3) / 4 };
   double sum[3] = { 0.0, 0.0, 0.0 };
   for (int i = 0; i < 3; ++i)
   {
@@ -205,7 +211,7 @@ bool vtkZFPBrickContour::IsInVisibleCell(
     high[axis] = std::min(box.First[axis] + sixths / 6, dims[axis] - 2);
     low[axis] = sixths % 6 == 0 && sixths > 0 ? box.First[axis] + sixths / 6 - 1 : high[axis];
   }
-  return !this->Hidden->Hides(high, blocks) || !this->Hidden->Hides(low, blocks);
+  return !this->IsHidden(high) || !this->IsHidden(low);
 }
 
 //------------------------------------------------------------------------------

@@ -104,6 +104,7 @@ private:
   Edge GetEdge(const EdgePlace& place) const;
   vtkIdType FindOwner(Edge edge) const;
   bool IsShared(const EdgePlace& place, const vtkZFPBricks::Box& box) const;
+  bool IsHidden(const int cell[3]) const;
   bool IsVisible(const EdgePlace& place) const;
   bool IsInVisibleCell(
     vtkPolyData* surface, const vtkIdType corners[3], const vtkZFPBricks::Box& box) const;

@@ -87,11 +87,10 @@ uvec2 HiddenCellsOf(ivec3 block)
 {
 #ifdef HAS_HIDDEN_CELLS
 #ifdef HAS_CACHE_MAP
-  uint at = 4u * HiddenRow(lowSlots.x);
+  return HiddenInSlot(lowSlots.x);
 #else
-  uint at = 4u * HiddenRow(BlockIndex(block));
+  return HiddenInSlot(BlockIndex(block));
 #endif
-  return uvec2(cacheValues[at], cacheValues[at + 1u]);
 #else
   return uvec2(0u);
 #endif

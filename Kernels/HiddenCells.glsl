@@ -33,6 +33,15 @@ uint HiddenRow(uint slot)
 #endif
 }
 
+#if defined(BINDING_CACHE_VALUES) && !defined(CACHE_BY_ROWS)
+// The bits that came with a block into its slot.
+uvec2 HiddenInSlot(uint slot)
+{
+  uint at = 4u * HiddenRow(slot);
+  return uvec2(cacheValues[at], cacheValues[at + 1u]);
+}
+#endif
+
 bool Hides(uvec2 hidden, ivec3 cell)
 {
   uvec3 local = uvec3(cell) & 3u;

@@ -107,8 +107,7 @@ uint HiddenAround(ivec3 cell)
 #else
     uint slot = BlockIndex(other >> 2);
 #endif
-    uint at = 4u * HiddenRow(slot);
-    around |= Hides(uvec2(cacheValues[at], cacheValues[at + 1u]), other) ? 1u << i : 0u;
+    around |= Hides(HiddenInSlot(slot), other) ? 1u << i : 0u;
   }
   return around;
 }
