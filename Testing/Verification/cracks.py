@@ -214,7 +214,7 @@ def slipped(depth, field, camera):
     origins, directions = camera.rays(depth.shape[::-1])
     last = np.array(field.values.shape[::-1]) - 1
     due = _meets(origins, directions, field.low + _MARGIN, field.high - _MARGIN)
-    off = ~_meets(origins, directions, 0 - _MARGIN, last + _MARGIN)
+    off = ~_meets(origins, directions, np.full(3, -_MARGIN), last + _MARGIN)
     hit = np.isfinite(depth)
     due, off = due.reshape(depth.shape), off.reshape(depth.shape)
     return due & ~hit, off & hit, int(due.sum() + off.sum())
@@ -222,13 +222,8 @@ def slipped(depth, field, camera):
 
 def _meets(origins, directions, low, high):
     """Which rays meet a box."""
-    near, far = np.zeros(len(origins)), np.full(len(origins), np.inf)
-    for axis in range(3):
-        start, step = origins[:, axis], directions[:, axis]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            a, b = ((np.broadcast_to(edge, 3)[axis] - start) / step for edge in (low, high))
-        near, far = np.maximum(near, np.minimum(a, b)), np.minimum(far, np.maximum(a, b))
-    return near <= far  # false also for NaN, of rays within a face
+    enter, leave = caster.clip_to_box(origins.T, directions.T, 0.0, np.inf, low, high)
+    return enter <= leave
 
 
 # ---- measuring

@@ -219,7 +219,7 @@ def cast_all(volume, isovalues, camera, size, clip=(0.0, np.inf)):
     to_index = np.linalg.inv(volume.index_to_world[:3, :3])
     start = ((origins - volume.index_to_world[:3, 3]) @ to_index.T).T
     step = (directions @ to_index.T).T
-    enter, leave = _clip(
+    enter, leave = clip_to_box(
         start, step, clip[0] / across, clip[1] / across, np.zeros(3), np.array(volume.values.shape[::-1]) - 1.0
     )
     rays = np.flatnonzero(enter <= leave)
@@ -329,26 +329,29 @@ def _cell_extremes(samples, pick):
 # --- a ray's way through the grid -----------------------------------------------------------------------------------------
 
 
-def _clip(start, step, begin, end, low, high):
-    """Return where rays from `begin` to `end` enter and leave a box; they miss it where ``enter > leave``."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        a, b = (low[:, None] - start) / step, (high[:, None] - start) / step
-    parallel = step == 0
-    between = (start >= low[:, None]) & (start <= high[:, None])
-    near = np.where(parallel, np.where(between, -np.inf, np.inf), np.minimum(a, b)).max(axis=0)
-    far = np.where(parallel, np.where(between, np.inf, -np.inf), np.maximum(a, b)).min(axis=0)
-    return np.maximum(near, begin), np.minimum(far, end)
+def clip_to_box(start, step, begin, end, low, high):
+    """Return where rays, each a column of `start` and `step`, enter and leave a box between `begin` and `end`; they miss it where
+    ``enter > leave``."""
+    near, far = begin, end
+    for axis in range(3):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            a, b = (low[axis] - start[axis]) / step[axis], (high[axis] - start[axis]) / step[axis]
+        parallel = step[axis] == 0
+        between = (start[axis] >= low[axis]) & (start[axis] <= high[axis])
+        near = np.maximum(near, np.where(parallel, np.where(between, -np.inf, np.inf), np.minimum(a, b)))
+        far = np.minimum(far, np.where(parallel, np.where(between, np.inf, -np.inf), np.maximum(a, b)))
+    return near, far
 
 
 def _cast_chunk(grid, start, step, begin, end, slack):
     """Return `early`, `depth` and `late` of rays given in index space."""
     last = (grid.size - 1).astype(float)
     hits = np.full((3, start.shape[1]), np.inf)
-    enter, leave = _clip(start, step, begin, end, np.zeros(3), last)
+    enter, leave = clip_to_box(start, step, begin, end, np.zeros(3), last)
     if slack.position:
         # Rays that just touch the box, or just miss it, may be seen by another caster as it likes.
-        touch, off = _clip(start, step, begin, end, np.full(3, -slack.position), last + slack.position)
-        core, out = _clip(start, step, begin, end, np.full(3, slack.position), last - slack.position)
+        touch, off = clip_to_box(start, step, begin, end, np.full(3, -slack.position), last + slack.position)
+        core, out = clip_to_box(start, step, begin, end, np.full(3, slack.position), last - slack.position)
         edge = (touch <= off) & (core > out)
         hits[0, edge] = touch[edge]
     rays = np.flatnonzero(enter <= leave)
