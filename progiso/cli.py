@@ -121,12 +121,23 @@ def _add_choice(command):
     )  # fmt: skip
 
 
+def _add_isovalues(command):
+    command.add_argument(
+        "--isovalue", type=float, required=True, action="append",
+        help="in the image's units; may be given several times",
+    )  # fmt: skip
+
+
+def _add_threads(command):
+    command.add_argument("--threads", type=int, default=0, help="0 (default) for one per core")
+
+
 def _add_compress(commands):
     command = _add_command(commands, "compress", _compress, "compress an image with fixed-rate ZFP")
     command.add_argument("in", metavar="IN", type=Path, help=_COMPRESSIBLE)
     command.add_argument("out", metavar="OUT", type=Path, help="a .vti or .zfp file")
     _add_array(command)
-    command.add_argument("--threads", type=int, default=0, help="0 (default) for one per core")
+    _add_threads(command)
     command.add_argument(
         "--appended", action="store_true",
         help="a .vti that reads ten times faster, though not in Debian 12's ParaView",
@@ -170,22 +181,16 @@ def _add_contour(commands):
     _add_input(command, "in")
     suffixes = " ".join(SURFACE_SUFFIXES)
     command.add_argument("out", metavar="OUT", type=Path, help=f"a file to write: {suffixes}")
-    command.add_argument(
-        "--isovalue", type=float, required=True, action="append",
-        help="in the image's units; may be given several times",
-    )  # fmt: skip
+    _add_isovalues(command)
     _add_array(command, "compress a plain image first, to this many bits per sample, in (0, 32]")
     command.add_argument("--no-normals", action="store_true", help="points and triangles alone")
-    command.add_argument("--threads", type=int, default=0, help="0 (default) for one per core")
+    _add_threads(command)
 
 
 def _add_render(commands):
     command = _add_command(commands, "render", _render, "render isosurfaces off screen")
     _add_input(command)
-    command.add_argument(
-        "--isovalue", type=float, required=True, action="append",
-        help="in the image's units; may be given several times",
-    )  # fmt: skip
+    _add_isovalues(command)
     command.add_argument(
         "--size", type=_size, default=(1280, 720), metavar="WxH", help="pixels (default: 1280x720)"
     )
