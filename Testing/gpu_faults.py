@@ -12,14 +12,14 @@ import subprocess
 import sys
 
 import numpy as np
+from progiso.benchmarks.fields import compressed, parse_field
+from progiso.benchmarks.machine import gpu_bytes
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_FLOAT
 from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow, vtkWindowToImageFilter
 from vtkmodules.vtkRenderingOpenGL2 import vtkTextureObject
 
 import progiso
-from progiso.benchmarks.fields import compressed, parse_field
-from progiso.benchmarks.machine import gpu_bytes
 
 # Takes memory in ever smaller pieces until there is none, and holds it until its input ends.
 HOLD = """
@@ -40,7 +40,11 @@ def hold_by_torch():
     """Fill the memory from another process; None where that cannot be."""
     try:
         process = subprocess.Popen(
-            ["python3", "-c", HOLD], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+            ["python3", "-c", HOLD],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
         )
     except OSError:
         return None
@@ -102,15 +106,28 @@ class Scene:
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--field", default="gyroid-512-k12-r4", help="the volume (default: %(default)s)")
-    parser.add_argument("--textures", type=int, metavar="N", help="fill with textures, N at most, whether there is torch or not")
+    parser.add_argument(
+        "--field", default="gyroid-512-k12-r4", help="the volume (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--textures",
+        type=int,
+        metavar="N",
+        help="fill with textures, N at most, whether there is torch or not",
+    )
     parsed = parser.parse_args()
     field = parse_field(parsed.field)
     scene = Scene(compressed(field), field.isovalues[0], (1280, 720))
     before, errors = scene.render()
-    found = {"field": field.name, "gl": scene.mapper.GetStatistics().GetGLDescription(), "errors_before": errors}
+    found = {
+        "field": field.name,
+        "gl": scene.mapper.GetStatistics().GetGLDescription(),
+        "errors_before": errors,
+    }
     scene.prop.ReleaseGraphicsResources(scene.window)
-    how, free = (parsed.textures is None and hold_by_torch()) or hold_by_textures(scene.window, parsed.textures or 1 << 10)
+    how, free = (parsed.textures is None and hold_by_torch()) or hold_by_textures(
+        scene.window, parsed.textures or 1 << 10
+    )
     found |= {"filled": how, "in_use": gpu_bytes()}
     full, errors = scene.render()
     empty = bool(np.ptp(full, axis=0).max() == 0)
@@ -118,10 +135,17 @@ def main():
     found["full"] = {"errors": errors, "picture": "right" if same else "none" if empty else "wrong"}
     free()
     after, errors = scene.render()
-    found["freed"] = {"errors": errors, "picture": "right" if np.array_equal(after, before) else "wrong"}
+    found["freed"] = {
+        "errors": errors,
+        "picture": "right" if np.array_equal(after, before) else "wrong",
+    }
     served = same and found["full"]["errors"] == 0
     refused = empty and found["full"]["errors"] == 1
-    good = np.ptp(before, axis=0).max() > 50 and (served or refused) and found["freed"] == {"errors": 0, "picture": "right"}
+    good = (
+        np.ptp(before, axis=0).max() > 50
+        and (served or refused)
+        and found["freed"] == {"errors": 0, "picture": "right"}
+    )
     found["verdict"] = "good" if good else "bad"
     print(json.dumps(found, indent=1))
     return 0 if good else 1

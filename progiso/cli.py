@@ -84,7 +84,9 @@ def _parser():
     _add_data(commands)
     bench = _add_command(commands, "bench", None, "measure time, memory and error beside VTK's own")
     add_bench(bench, _size)
-    about = "measure error and time on extreme fields and views, beside a caster in double precision"
+    about = (
+        "measure error and time on extreme fields and views, beside a caster in double precision"
+    )
     add_verify(_add_command(commands, "verify", None, about))
     return parser
 
@@ -344,7 +346,9 @@ def _remark_on_compressed(image, parsed):
     for name in ("rate", "component"):
         given, held = getattr(parsed, name), about[name]
         if given not in (None, held):
-            _remark(f"--{name} {given:g} is ignored: the file is compressed, its {name} is {held:g}")
+            _remark(
+                f"--{name} {given:g} is ignored: the file is compressed, its {name} is {held:g}"
+            )
 
 
 def _compress(parsed):

@@ -11,9 +11,7 @@ _POINTS, _CELLS = 0, 1  # vtkDataObject::FieldAssociations
 GHOSTS = "vtkGhostType"  # vtkDataSetAttributes::GhostArrayName()
 
 
-def compress(
-    image, rate=8.0, array=None, component=0, threads=0, progress=None, mask_nan=False
-):
+def compress(image, rate=8.0, array=None, component=0, threads=0, progress=None, mask_nan=False):
     """Compress one array of an image with fixed-rate ZFP.
 
     What ghost arrays of the image hide (``vtkGhostType``), of points or cells, stays hidden: an

@@ -65,9 +65,7 @@ class ImageAccessor:
         >>> volume = image.progiso.compress(rate=4)
         """
         return pyvista.wrap(
-            compress(
-                self._image, rate, scalars, component, progress=progress, mask_nan=mask_nan
-            )
+            compress(self._image, rate, scalars, component, progress=progress, mask_nan=mask_nan)
         )
 
     def decompress(self, progress=None):

@@ -87,9 +87,7 @@ def compress_slabs(
     return build(arrays, dimensions, rate, name, 0, threads, progress, mask_nan, units)
 
 
-def build(
-    arrays, dimensions, rate, name, component, threads, progress, mask_nan, units=(0.0, 1.0)
-):
+def build(arrays, dimensions, rate, name, component, threads, progress, mask_nan, units=(0.0, 1.0)):
     """Compress slabs of whole layers of blocks that are VTK arrays; see `compress_slabs`."""
     builder = vtkCompressedVolumeBuilder()
     builder.SetArrayName(name)

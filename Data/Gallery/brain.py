@@ -3,9 +3,10 @@
 import sys
 from pathlib import Path
 
-import progiso
 import pyvista as pv
 from progiso.data import fetch
+
+import progiso
 
 
 def draw(size=(640, 480)):

@@ -4,9 +4,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-import progiso
 import pyvista as pv
 from progiso.data import fetch
+
+import progiso
 
 
 def draw(size=(800, 400), samples=32):

@@ -4,9 +4,10 @@ import sys
 from pathlib import Path
 
 import numpy as np
-import progiso
 import pyvista as pv
 from progiso.data import fetch
+
+import progiso
 
 
 def draw(size=(800, 640)):

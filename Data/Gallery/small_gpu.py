@@ -3,9 +3,10 @@
 import sys
 from pathlib import Path
 
-import progiso
 import pyvista as pv
 from progiso.data import compressed
+
+import progiso
 
 
 def draw(size=(800, 400), samples=512, budget=24 * 2**20):

@@ -34,7 +34,9 @@ class Browser:
         self._socket = await self._session.ws_connect(host + "/ws", max_msg_size=LARGEST)
         await self._call("wslink.hello", {"secret": "wslink-secret"}, name="system:c0:0")
         state = (await self._call("trame.state.get"))["state"]
-        assert "vtk-remote-view" in state[f"trame__template_{plotter}"], "the page has no view that the server renders"
+        assert "vtk-remote-view" in state[f"trame__template_{plotter}"], (
+            "the page has no view that the server renders"
+        )
         self._view = state[f"view_{plotter}Id"]
         await self._call("viewport.image.push.observer.add", self._view)
         return self
@@ -51,9 +53,13 @@ class Browser:
         await self._mouse("up", places[-1], 0)
 
     async def _mouse(self, action, place, pressed):
-        keys = dict.fromkeys(("buttonMiddle", "buttonRight", "shiftKey", "ctrlKey", "altKey", "metaKey"), 0)
+        keys = dict.fromkeys(
+            ("buttonMiddle", "buttonRight", "shiftKey", "ctrlKey", "altKey", "metaKey"), 0
+        )
         where = {"view": self._view, "x": place[0], "y": place[1]}
-        await self._call("viewport.mouse.interaction", {"action": action, "buttonLeft": pressed, **where, **keys})
+        await self._call(
+            "viewport.mouse.interaction", {"action": action, "buttonLeft": pressed, **where, **keys}
+        )
 
     async def last_picture(self):
         """Wait until no more pictures come; return the last one's colours [row, column, rgb]."""
@@ -61,13 +67,21 @@ class Browser:
             try:
                 await self._receive(QUIET)
             except asyncio.TimeoutError:
-                assert self.pictures and not self.pictures[-1]["stale"], "there is no picture, or the last one is old"
+                assert self.pictures and not self.pictures[-1]["stale"], (
+                    "there is no picture, or the last one is old"
+                )
                 return np.asarray(Image.open(io.BytesIO(self.pictures[-1]["image"])))
 
     async def _call(self, method, *arguments, name=None):
         self._calls += 1
         name = name or f"rpc:c0:{self._calls}"
-        call = {"wslink": "1.0", "id": name, "method": method, "args": list(arguments), "kwargs": {}}
+        call = {
+            "wslink": "1.0",
+            "id": name,
+            "method": method,
+            "args": list(arguments),
+            "kwargs": {},
+        }
         for chunk in generate_chunks(msgpack.packb(call), LARGEST):
             await self._socket.send_bytes(chunk)
         while True:

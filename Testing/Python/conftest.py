@@ -17,19 +17,32 @@ if not os.environ.get("DISPLAY"):
 os.environ.setdefault("PROGISO_GL_DEBUG", "1")
 
 # Property-based tests take the same examples every time, unless pytest is called with `--hypothesis-profile long`.
-settings.register_profile("progiso", max_examples=25, derandomize=True, deadline=None, suppress_health_check=list(HealthCheck))
 settings.register_profile(
-    "long", settings.get_profile("progiso"), max_examples=int(os.environ.get("PROGISO_EXAMPLES", 2000)), derandomize=False
+    "progiso",
+    max_examples=25,
+    derandomize=True,
+    deadline=None,
+    suppress_health_check=list(HealthCheck),
+)
+settings.register_profile(
+    "long",
+    settings.get_profile("progiso"),
+    max_examples=int(os.environ.get("PROGISO_EXAMPLES", 2000)),
+    derandomize=False,
 )
 settings.load_profile("progiso")
 
 
 def pytest_configure(config):
-    config.addinivalue_line("markers", "paraview: runs ParaView with the plugin; wants PROGISO_PARAVIEW_BUILD")
+    config.addinivalue_line(
+        "markers", "paraview: runs ParaView with the plugin; wants PROGISO_PARAVIEW_BUILD"
+    )
 
 
 def pytest_addoption(parser):
-    parser.addoption("--write-baselines", action="store_true", help="store what is rendered as the new baselines")
+    parser.addoption(
+        "--write-baselines", action="store_true", help="store what is rendered as the new baselines"
+    )
 
 
 @pytest.fixture

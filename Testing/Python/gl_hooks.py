@@ -18,12 +18,16 @@ _PROTOTYPES = {
     "glBufferData": ctypes.CFUNCTYPE(None, _UINT, _SIZE, _ADDRESS, _UINT),
     "glCompileShader": ctypes.CFUNCTYPE(None, _UINT),
     "glDebugMessageCallback": ctypes.CFUNCTYPE(None, _ADDRESS, _ADDRESS),
-    "glDebugMessageControl": ctypes.CFUNCTYPE(None, _UINT, _UINT, _UINT, ctypes.c_int, _ADDRESS, ctypes.c_ubyte),
+    "glDebugMessageControl": ctypes.CFUNCTYPE(
+        None, _UINT, _UINT, _UINT, ctypes.c_int, _ADDRESS, ctypes.c_ubyte
+    ),
     "glDispatchCompute": ctypes.CFUNCTYPE(None, _UINT, _UINT, _UINT),
     "glEnable": ctypes.CFUNCTYPE(None, _UINT),
     "glGetError": ctypes.CFUNCTYPE(_UINT),
     "glGetShaderSource": ctypes.CFUNCTYPE(None, _UINT, ctypes.c_int, _ADDRESS, ctypes.c_char_p),
-    "glShaderSource": ctypes.CFUNCTYPE(None, _UINT, ctypes.c_int, ctypes.POINTER(ctypes.c_char_p), _ADDRESS),
+    "glShaderSource": ctypes.CFUNCTYPE(
+        None, _UINT, ctypes.c_int, ctypes.POINTER(ctypes.c_char_p), _ADDRESS
+    ),
 }
 
 

@@ -60,20 +60,39 @@ def capped(volume, isovalues, camera, size, cropping):
     region that is drawn on another side than it left the last one, and none where the two make up for each other."""
     planes, flags = cropping
     origins, directions = camera.rays(size)
-    points, ways = to_index(volume, origins), directions @ np.linalg.inv(volume.index_to_world[:3, :3]).T
+    points, ways = (
+        to_index(volume, origins),
+        directions @ np.linalg.inv(volume.index_to_world[:3, :3]).T,
+    )
     last = np.array(volume.values.shape[::-1]) - 1.0
     with np.errstate(divide="ignore", invalid="ignore"):
-        faces = np.stack([(np.array([0.0, end]) - points[:, [axis]]) / ways[:, [axis]] for axis, end in enumerate(last)])
-        inner = [(np.array(planes[2 * axis : 2 * axis + 2]) - points[:, [axis]]) / ways[:, [axis]] for axis in range(3)]
+        faces = np.stack(
+            [
+                (np.array([0.0, end]) - points[:, [axis]]) / ways[:, [axis]]
+                for axis, end in enumerate(last)
+            ]
+        )
+        inner = [
+            (np.array(planes[2 * axis : 2 * axis + 2]) - points[:, [axis]]) / ways[:, [axis]]
+            for axis in range(3)
+        ]
     enter, leave = faces.min(axis=2).max(axis=0), faces.max(axis=2).min(axis=0)
     hit = enter < leave
-    cuts = np.sort(np.clip(np.concatenate([*inner, enter[:, None], leave[:, None]], axis=1), enter[:, None], leave[:, None]))
+    cuts = np.sort(
+        np.clip(
+            np.concatenate([*inner, enter[:, None], leave[:, None]], axis=1),
+            enter[:, None],
+            leave[:, None],
+        )
+    )
     state, caps = np.zeros(len(points), int), np.zeros(len(points), bool)
     was_drawn = np.zeros(len(points), bool)
     for begin, end in zip(cuts.T, cuts.T[1:]):
         middle = points + (0.5 * (begin + end))[:, None] * ways
         drawn = hit & (end - begin > 1e-9) & kept(flags, regions(middle, planes))
-        at_begin, at_end = (side(volume, isovalues, points + t[:, None] * ways) for t in (begin, end))
+        at_begin, at_end = (
+            side(volume, isovalues, points + t[:, None] * ways) for t in (begin, end)
+        )
         starts = drawn & ~was_drawn & (begin > enter + 1e-9)
         caps |= starts & (at_begin != state)
         state = np.where(drawn, at_end, state)

@@ -17,13 +17,17 @@ def read_png(path):
     reader.SetFileName(str(path))
     reader.Update()
     width, height, _ = reader.GetOutput().GetDimensions()
-    return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).reshape(height, width, -1)[::-1, :, :3]
+    return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).reshape(height, width, -1)[
+        ::-1, :, :3
+    ]
 
 
 def write_png(pixels, path):
     image = vtkImageData()
     image.SetDimensions(pixels.shape[1], pixels.shape[0], 1)
-    image.GetPointData().SetScalars(numpy_to_vtk(np.ascontiguousarray(pixels[::-1]).reshape(-1, 3), deep=True))
+    image.GetPointData().SetScalars(
+        numpy_to_vtk(np.ascontiguousarray(pixels[::-1]).reshape(-1, 3), deep=True)
+    )
     writer = vtkPNGWriter()
     writer.SetInputData(image)
     writer.SetFileName(str(path))
@@ -37,7 +41,9 @@ def check_picture(pixels, name, config, folder):
         BASELINES.mkdir(exist_ok=True)
         write_png(pixels, path)
         return
-    assert path.exists(), f"there is no baseline {path}: look at the picture, then run pytest --write-baselines"
+    assert path.exists(), (
+        f"there is no baseline {path}: look at the picture, then run pytest --write-baselines"
+    )
     baseline = read_png(path)
     assert pixels.shape == baseline.shape
     difference = np.abs(pixels.astype(int) - baseline).max(axis=2)

@@ -6,12 +6,13 @@ import re
 import numpy as np
 import tolerances
 from oracle.caster import Camera, cast
-from progiso import depth, statistics, vtkIsosurfaceVolume, vtkProgressiveIsosurfaceMapper
 from progiso.verification.agreement import compare
 from support import reference_volume, vtk_messages
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow, vtkWindowToImageFilter
+
+from progiso import depth, statistics, vtkIsosurfaceVolume, vtkProgressiveIsosurfaceMapper
 
 MANY_RENDERS = 5000
 
@@ -36,7 +37,9 @@ class Scene:
         of the mapper: ``SpeculationLimit=1`` calls ``SetSpeculationLimit(1)``.
     """
 
-    def __init__(self, image, isovalue, camera, size=(160, 120), user_matrix=None, lit=False, **settings):
+    def __init__(
+        self, image, isovalue, camera, size=(160, 120), user_matrix=None, lit=False, **settings
+    ):
         self.mapper = vtkProgressiveIsosurfaceMapper()
         self.mapper.SetInputData(image)
         for name, value in settings.items():
@@ -95,7 +98,9 @@ class Scene:
             self.window.Render()
             if self.mapper.GetConverged():
                 break
-            assert count < MANY_RENDERS, f"not complete after {count} renders: {self.statistics()['passes'][-1]}"
+            assert count < MANY_RENDERS, (
+                f"not complete after {count} renders: {self.statistics()['passes'][-1]}"
+            )
         assert self.mapper.GetNumberOfGLErrors() == 0
         return count
 
@@ -114,7 +119,11 @@ class Scene:
         grab.ReadFrontBufferOff()
         grab.Update()
         width, height, _ = grab.GetOutput().GetDimensions()
-        return vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars()).reshape(height, width, -1)[::-1, :, :3].copy()
+        return (
+            vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars())
+            .reshape(height, width, -1)[::-1, :, :3]
+            .copy()
+        )
 
 
 def least_budget(image, isovalue, camera, size=(160, 120), **settings):
@@ -133,7 +142,9 @@ def orbit(volume, i, n, view_angle=50.0, distance=1.5):
     y = (2 * i / n - 1) + 1 / n
     r, phi = np.sqrt(1 - y * y), i * np.pi * (3 - np.sqrt(5))
     centre = (low + high) / 2
-    position = centre + distance * (high - low).max() * np.array([r * np.cos(phi), y, r * np.sin(phi)])
+    position = centre + distance * (high - low).max() * np.array(
+        [r * np.cos(phi), y, r * np.sin(phi)]
+    )
     return Camera(tuple(position), tuple(centre), view_angle=view_angle)
 
 
@@ -167,5 +178,10 @@ def check_depth(depth, expected, grazing=tolerances.GRAZING_FRACTION):
             f" ({expected.early[r, c]:.9g} to {expected.late[r, c]:.9g}), off by {found.error[r, c]:.3g} voxels"
             for r, c in np.argwhere(wrong)[:8]
         ]
-        raise AssertionError(f"{wrong.sum()} of {wrong.size} pixels are off by more than is allowed\n" + "\n".join(lines))
-    assert found.grazing <= grazing, f"{found.grazing:.2%} of the rays that can hit graze: too many to judge by"
+        raise AssertionError(
+            f"{wrong.sum()} of {wrong.size} pixels are off by more than is allowed\n"
+            + "\n".join(lines)
+        )
+    assert found.grazing <= grazing, (
+        f"{found.grazing:.2%} of the rays that can hit graze: too many to judge by"
+    )

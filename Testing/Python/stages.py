@@ -1,9 +1,7 @@
 """Scenes that either mapper can draw, ours or VTK's own isosurface mapper, and how their pictures are compared."""
 
 import numpy as np
-import progiso
 import tolerances
-from progiso import vtkIsosurfaceVolume, vtkProgressiveIsosurfaceMapper
 from scenes import orbit
 from support import reference_volume
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -18,6 +16,9 @@ from vtkmodules.vtkRenderingCore import (
     vtkWindowToImageFilter,
 )
 from vtkmodules.vtkRenderingVolumeOpenGL2 import vtkOpenGLGPUVolumeRayCastMapper
+
+import progiso
+from progiso import vtkIsosurfaceVolume, vtkProgressiveIsosurfaceMapper
 
 SIZE = (160, 128)
 BACKGROUND = (0.2, 0.3, 0.4)
@@ -150,7 +151,10 @@ class Stage:
 
     def look_at(self, image, view=1, distance=1.5, angle=50.0, camera=None):
         """Point a camera at an image, from one of the four places of an orbit."""
-        place, camera = orbit(reference_volume(image), view, 4, angle, distance), camera or self.camera
+        place, camera = (
+            orbit(reference_volume(image), view, 4, angle, distance),
+            camera or self.camera,
+        )
         camera.SetPosition(place.position)
         camera.SetFocalPoint(place.focal_point)
         camera.SetViewUp(place.view_up)
@@ -203,7 +207,9 @@ def far_apart(ours, theirs, beside=None):
 def check_like_vtk(ours, theirs, beside=None):
     """Hold our picture against VTK's: the one definition of agreement."""
     assert ours.shape == theirs.shape
-    assert (np.abs(theirs - theirs[0, 0]).max(axis=2) > 0).mean() > 0.05, "VTK's picture shows next to nothing"
+    assert (np.abs(theirs - theirs[0, 0]).max(axis=2) > 0).mean() > 0.05, (
+        "VTK's picture shows next to nothing"
+    )
     share, mean = far_apart(ours, theirs, beside)
     assert share <= tolerances.VTK_PIXELS and mean <= tolerances.VTK_MEAN, (
         f"{share:.2%} of the pixels are not VTK's, {mean:.2f} levels in the mean"

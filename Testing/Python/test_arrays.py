@@ -1,9 +1,10 @@
 """NumPy arrays wherever an image is wanted, indexed [x, y, z] as pyvista takes them."""
 
 import numpy as np
-import progiso
 import pytest
 from support import blobs, make_image, reference_values, same_bits, values_of
+
+import progiso
 
 FIELD = blobs((9, 12, 14), 5)  # [z, y, x]
 
@@ -15,7 +16,11 @@ def image():
 
 def test_compress(image):
     volume = progiso.compress(FIELD.T, rate=12)
-    assert volume.GetDimensions() == (14, 12, 9) and volume.GetSpacing() == (1, 1, 1) and volume.GetOrigin() == (0, 0, 0)
+    assert (
+        volume.GetDimensions() == (14, 12, 9)
+        and volume.GetSpacing() == (1, 1, 1)
+        and volume.GetOrigin() == (0, 0, 0)
+    )
     assert same_bits(reference_values(volume), reference_values(progiso.compress(image, rate=12)))
     assert progiso.describe(volume)["array"] == "values"
 
@@ -42,7 +47,10 @@ def test_contour_render_and_save(image, tmp_path):
     assert progiso.contour(array, 0.1).GetNumberOfPolys() > 100
     of_array, of_image = (progiso.render(volume, 0.1, (64, 48)).image for volume in (array, image))
     assert np.array_equal(of_array, of_image) and np.ptp(of_array) > 100
-    assert progiso.make_isosurface(array, 0.1).GetBounds() == progiso.make_isosurface(image, 0.1).GetBounds()
+    assert (
+        progiso.make_isosurface(array, 0.1).GetBounds()
+        == progiso.make_isosurface(image, 0.1).GetBounds()
+    )
     progiso.save(array, tmp_path / "array.vti")
     assert np.array_equal(values_of(progiso.read(tmp_path / "array.vti")), FIELD)
 
@@ -57,6 +65,10 @@ def test_contour_render_and_save(image, tmp_path):
     ],
 )
 def test_what_is_no_volume(wrong, message):
-    for use in (progiso.compress, lambda volume: progiso.contour(volume, 0), lambda volume: progiso.render(volume, 0)):
+    for use in (
+        progiso.compress,
+        lambda volume: progiso.contour(volume, 0),
+        lambda volume: progiso.render(volume, 0),
+    ):
         with pytest.raises(TypeError, match=message):
             use(wrong)

@@ -8,7 +8,6 @@ import subprocess
 import sys
 
 import numpy as np
-import progiso
 import pytest
 import tolerances
 from oracle.caster import Camera, Volume, cast
@@ -29,6 +28,8 @@ from progiso.verification.agreement import depth_error
 from support import blobs, make_image, noise
 from test_cli import call
 from vtkmodules.util.numpy_support import vtk_to_numpy
+
+import progiso
 
 TINY = ("--fields", "gyroid-24-k2-r8", "--size", "64x48", "--positions", 2)
 KINDS = {
@@ -104,7 +105,9 @@ def test_protocol_counts(results):
     assert 0 < record["table2"]["visible_percent"] <= 100
     explicit = record["explicit"]
     assert all(m["triangles"] > 0 and m["bytes"] > 0 for m in explicit["meshes"])
-    for ours, theirs in zip(np.repeat(explicit["active_percent"], 2), record["active"]["max_percent"]):
+    for ours, theirs in zip(
+        np.repeat(explicit["active_percent"], 2), record["active"]["max_percent"]
+    ):
         assert theirs <= ours + 1e-9 or ours == 100
 
 
@@ -112,15 +115,32 @@ def test_moved_bytes(results):
     """The floor of an image's time: no less than its pixels, its blocks decoded and intersected, once."""
     record = load_document(results("paper") / "results.json")["measurements"]["protocol"][0]
     pixels = 64 * 48 * 32
-    assert pixels < record["moved_bytes"] < pixels + 6**3 * (256 + 64 + 256) * len(record["by_pass"]["with"])
+    assert (
+        pixels
+        < record["moved_bytes"]
+        < pixels + 6**3 * (256 + 64 + 256) * len(record["by_pass"]["with"])
+    )
 
 
 @pytest.mark.parametrize("name, kind", [("peers", "peers"), ("paper", "protocol")])
 def test_largest_mesh(results, folder, name, kind):
     """No meshes of volumes larger than that; everything else as ever."""
     out = f"{name}-no-mesh"
-    call(folder, "bench", name, *TINY, *OPTIONS.get(name, ()), "--largest-mesh", 16, "--no-plots", "--output", out)
-    measured = [load_document(folder / of / "results.json")["measurements"][kind][0] for of in (name, out)]
+    call(
+        folder,
+        "bench",
+        name,
+        *TINY,
+        *OPTIONS.get(name, ()),
+        "--largest-mesh",
+        16,
+        "--no-plots",
+        "--output",
+        out,
+    )
+    measured = [
+        load_document(folder / of / "results.json")["measurements"][kind][0] for of in (name, out)
+    ]
     text = json.dumps(measured[1])
     assert "no meshes of volumes larger than 16" in text and "triangles" not in text
     assert "triangles" in json.dumps(measured[0]) and measured[0].keys() == measured[1].keys()
@@ -139,16 +159,22 @@ def test_report_makes_the_same_of_json(results, folder):
     call(folder, "bench", "report", "quick/results.json", "--output", "again")
     for path in results("quick").glob("*.md"):
         assert (folder / "again" / path.name).read_bytes() == path.read_bytes()
-    assert {p.name for p in (folder / "again").glob("*.png")} == {p.name for p in results("quick").glob("*.png")}
+    assert {p.name for p in (folder / "again").glob("*.png")} == {
+        p.name for p in results("quick").glob("*.png")
+    }
 
 
 def test_report_as_a_page(results, folder):
     """A Markdown file of any name, with its plots in a folder of that name."""
-    call(folder, "bench", "report", results("quick") / "results.json", "--output", "pages/machine.md")
+    call(
+        folder, "bench", "report", results("quick") / "results.json", "--output", "pages/machine.md"
+    )
     text = (folder / "pages" / "machine.md").read_text()
     shown = re.findall(r"!\[\]\((.*)\)", text)
     assert shown and all(name.startswith("machine/") for name in shown)
-    assert sorted(shown) == sorted(f"machine/{p.name}" for p in (folder / "pages" / "machine").iterdir())
+    assert sorted(shown) == sorted(
+        f"machine/{p.name}" for p in (folder / "pages" / "machine").iterdir()
+    )
     assert text == (results("quick") / "results.md").read_text().replace("![](", "![](machine/")
 
 
@@ -167,7 +193,17 @@ def test_measuring_needs_no_matplotlib(folder):
     (folder / "bare" / "matplotlib.py").write_text("raise ImportError('not here')")
     path = os.pathsep.join(filter(None, (str(folder / "bare"), os.environ.get("PYTHONPATH"))))
     environment = dict(os.environ, PYTHONPATH=path)
-    command = [sys.executable, "-m", "progiso", "bench", "peers", *map(str, TINY), "--no-plots", "--output", "bare"]
+    command = [
+        sys.executable,
+        "-m",
+        "progiso",
+        "bench",
+        "peers",
+        *map(str, TINY),
+        "--no-plots",
+        "--output",
+        "bare",
+    ]
     subprocess.run(command, cwd=folder, env=environment, check=True, capture_output=True)
     assert (folder / "bare" / "results.md").is_file() and not list((folder / "bare").glob("*.png"))
 
@@ -176,15 +212,26 @@ def test_soak_judges_what_is_left_behind(results):
     """Memory that grows by more than the goal, steps and noise aside, and errors of OpenGL's."""
     document = load_document(results("soak") / "results.json")
     (record,) = document["measurements"]["soak"]
-    assert record["samples"]["frame"] == list(range(41)) and record["warm_up"] == 10 and record["gl_errors"] == 0
+    assert (
+        record["samples"]["frame"] == list(range(41))
+        and record["warm_up"] == 10
+        and record["gl_errors"] == 0
+    )
     assert sum(record["changes"].values()) > 0 and min(record["samples"]["rss"]) > 2**24
-    assert all(peak >= rest > 2**16 for peak, rest in zip(record["samples"]["peak"], record["samples"]["mapper"]))
+    assert all(
+        peak >= rest > 2**16
+        for peak, rest in zip(record["samples"]["peak"], record["samples"]["mapper"])
+    )
     frames, noise = np.arange(0, 10001, 50), np.random.default_rng(1).normal(0, 2**18, 201)
     for slope, met in ((0.9, True), (1.1, False)):
         rss = 1e9 + slope * 2**20 * frames / 1000 + noise + 2**23 * (frames > 1000)
         record["growth"]["rss"] = growth({"frame": frames, "rss": rss}, "rss", 2000)
         assert record["growth"]["rss"] == pytest.approx(slope * 2**20 / 1000, rel=0.05)
-        row = next(line for line in markdown(document, {}).splitlines() if line.startswith("| main memory of the process"))
+        row = next(
+            line
+            for line in markdown(document, {}).splitlines()
+            if line.startswith("| main memory of the process")
+        )
         assert ("in 1000 frames: met |" in row) == met != ("**not met**" in row)
     record["gl_errors"] = 1
     assert "none: **not met**" in markdown(document, {})
@@ -240,7 +287,11 @@ def test_depth_error_of_a_shifted_image():
     assert 500 < hit.sum() < hit.size
     assert set(depth_error(result.depth, result.depth, result.voxels).values()) == {0}
     shifted = depth_error(result.depth - 0.25 / result.voxels, result.depth, result.voxels)
-    assert shifted["mean"] == pytest.approx(0.25) and shifted["p99"] == pytest.approx(0.25) and shifted["wrong"] == 0
+    assert (
+        shifted["mean"] == pytest.approx(0.25)
+        and shifted["p99"] == pytest.approx(0.25)
+        and shifted["wrong"] == 0
+    )
     partial = result.depth.copy()
     partial[:30] = np.inf
     assert depth_error(partial, result.depth, result.voxels)["wrong"] == hit[:30].sum() / hit.size
@@ -261,7 +312,12 @@ def test_topology(border):
     values = np.maximum(np.maximum(torus(20.3), torus(65.6)), ball).astype(np.float32)
     found = topology(make_image(values), 0.0)
     assert (found["components"], found["genus"], found["euler"]) == (3, 2, 2)
-    assert topology(make_image(values), 100.0) == {"triangles": 0, "components": 0, "euler": 0, "genus": 0}
+    assert topology(make_image(values), 100.0) == {
+        "triangles": 0,
+        "components": 0,
+        "euler": 0,
+        "genus": 0,
+    }
 
 
 def test_rates_tell_what_they_cost(results):
@@ -273,7 +329,9 @@ def test_rates_tell_what_they_cost(results):
         assert points[0][key] > 5 * points[4][key] > 500 * points[-1][key]
     assert points[-1]["wrong"] == 0 and points[-1]["triangles"] == record["topology"]["triangles"]
     values = progiso.read(fetch("gyroid", size=24, k=2)).GetPointData().GetScalars()
-    decoded = progiso.decompress(progiso.compress(progiso.read(fetch("gyroid", size=24, k=2)), points[2]["rate"]))
+    decoded = progiso.decompress(
+        progiso.compress(progiso.read(fetch("gyroid", size=24, k=2)), points[2]["rate"])
+    )
     off = vtk_to_numpy(decoded.GetPointData().GetScalars()).astype(float) - vtk_to_numpy(values)
     assert points[2]["max_error"] == np.abs(off).max()
     assert points[2]["rms_error"] == pytest.approx(np.sqrt(np.mean(off**2)))
@@ -297,7 +355,10 @@ def off(view, camera, expected):
     depth = view.depth()
     view.close()
     both = np.isfinite(depth) & np.isfinite(expected.depth)
-    assert both.sum() > 500 and np.mean(np.isfinite(depth) != np.isfinite(expected.depth)) < tolerances.IMAGE_PIXELS
+    assert (
+        both.sum() > 500
+        and np.mean(np.isfinite(depth) != np.isfinite(expected.depth)) < tolerances.IMAGE_PIXELS
+    )
     return (depth[both] - expected.depth[both]) * expected.voxels[both]
 
 
@@ -335,7 +396,9 @@ def test_blocks_of_explicit_extraction(shape):
                 active.add(neighbour)
     counted = BlockRanges(values).count(1.5)
     # a block's range may hold the isovalue where none of its cells does
-    assert len(held) <= counted["held"] and len(active) <= counted["active"] <= counted["blocks"] == np.prod(blocks)
+    assert len(held) <= counted["held"] and len(active) <= counted["active"] <= counted[
+        "blocks"
+    ] == np.prod(blocks)
     ranges = {
         block: values[tuple(slice(4 * b, 4 * b + 5) for b in block)]
         for block in np.ndindex(*(-(-(n - 1) // 4) for n in shape))
@@ -360,7 +423,10 @@ def test_goals_are_computed(results):
         records[0]["others_cores"] = 0.0
     record = document["measurements"]["latency"][0]
     record["cold"]["mean"] = 100.0
-    for milliseconds, verdict, met in ((49.0, "(50 ms): met", 1), (51.0, "(50 ms): **not met**", 0)):
+    for milliseconds, verdict, met in (
+        (49.0, "(50 ms): met", 1),
+        (51.0, "(50 ms): **not met**", 0),
+    ):
         record["moved"]["mean"] = milliseconds
         text = markdown(document, {})
         assert verdict in text
@@ -381,7 +447,10 @@ def test_busy_machines_are_told(results):
     record = document["measurements"]["latency"][0]
     for record["moved"]["mean"] in (0.1, 1e6):
         text = markdown(document, {})
-        assert "**The machine was busy**: other processes took up to 1.3 of its 2 cores during 2 of 2" in text
+        assert (
+            "**The machine was busy**: other processes took up to 1.3 of its 2 cores during 2 of 2"
+            in text
+        )
         assert "## Goals: 1 of 1 met, 1 not judged" in text
         assert "not met" not in text
 
@@ -395,6 +464,13 @@ def test_goals_by_machine():
     assert goals.complete_image(software, (1280, 720), 1024**3, 9.9) is None
     published, strong = goals.against_paper(gpu, "gyroid-256-k6-r2", (1280, 720), 8.0)
     assert published.met and not strong.met
-    assert [v.met for v in goals.against_paper(software, "gyroid-256-k6-r2", (640, 360), 500.0)] == [True, True]
+    assert [
+        v.met for v in goals.against_paper(software, "gyroid-256-k6-r2", (640, 360), 500.0)
+    ] == [True, True]
     assert goals.against_mapper(software, (1280, 720), "ct-cranium-r8", 7_000_000, 500.0, 600.0).met
-    assert goals.against_mapper(software, (1280, 720), "marschner-lobb-128-k6-r4", 2_000_000, 500.0, 600.0) is None
+    assert (
+        goals.against_mapper(
+            software, (1280, 720), "marschner-lobb-128-k6-r4", 2_000_000, 500.0, 600.0
+        )
+        is None
+    )

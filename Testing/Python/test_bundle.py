@@ -31,7 +31,11 @@ def bundle(tmp_path):
 def launch(bundle, *arguments, **environment):
     """Run the launcher; return the environment and the arguments that Python got."""
     done = subprocess.run(
-        [bundle / "run", *arguments], env={**os.environ, **environment}, capture_output=True, text=True, check=True
+        [bundle / "run", *arguments],
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        check=True,
     )
     return json.loads(done.stdout)
 
@@ -48,19 +52,33 @@ def test_nothing_of_the_machines_python_comes_in(bundle):
 def test_libraries_stand_in_where_they_lack(bundle):
     """And what the caller had set comes after them."""
     folders = launch(bundle, LD_LIBRARY_PATH="/driver")[0]["LD_LIBRARY_PATH"].split(":")
-    assert folders == [str(bundle / "python/lib"), str(bundle / "libraries/libnobodyhasthis.so.1"), "/driver"]
+    assert folders == [
+        str(bundle / "python/lib"),
+        str(bundle / "libraries/libnobodyhasthis.so.1"),
+        "/driver",
+    ]
 
 
 def test_the_callers_window_stays(bundle):
-    assert launch(bundle, VTK_DEFAULT_OPENGL_WINDOW="mine")[0]["VTK_DEFAULT_OPENGL_WINDOW"] == "mine"
+    assert (
+        launch(bundle, VTK_DEFAULT_OPENGL_WINDOW="mine")[0]["VTK_DEFAULT_OPENGL_WINDOW"] == "mine"
+    )
 
 
 @pytest.mark.parametrize(
-    "arguments, words", [(["--with", "no-such-file"], "no-such-file"), ([], "run without --package-only once")]
+    "arguments, words",
+    [(["--with", "no-such-file"], "no-such-file"), ([], "run without --package-only once")],
 )
 def test_packer_says_what_is_wrong(tmp_path, arguments, words):
     done = subprocess.run(
-        [sys.executable, BENCHMARKS / "pack-bundle", "--package-only", "--out", tmp_path, *arguments],
+        [
+            sys.executable,
+            BENCHMARKS / "pack-bundle",
+            "--package-only",
+            "--out",
+            tmp_path,
+            *arguments,
+        ],
         capture_output=True,
         text=True,
     )

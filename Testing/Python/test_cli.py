@@ -7,14 +7,23 @@ import subprocess
 import sys
 
 import numpy as np
-import progiso
 import pytest
 import tolerances
 from oracle.caster import Camera, cast
 from pictures import read_png
 from scenes import check_depth, orbit
-from support import blobs, make_image, marschner_lobb, reference_values, reference_volume, same_bits, values_of
+from support import (
+    blobs,
+    make_image,
+    marschner_lobb,
+    reference_values,
+    reference_volume,
+    same_bits,
+    values_of,
+)
 from test_statistics import check_memory
+
+import progiso
 
 
 def run(folder, *arguments):
@@ -45,13 +54,16 @@ def test_compress_is_the_librarys(folder):
     expected = progiso.compress(progiso.read(folder / "plain.vti"), 6)
     packed = progiso.read(folder / "packed.vti")
     assert same_bits(reference_values(packed), reference_values(expected))
-    assert packed.GetSpacing() == expected.GetSpacing() and packed.GetOrigin() == expected.GetOrigin()
+    assert (
+        packed.GetSpacing() == expected.GetSpacing() and packed.GetOrigin() == expected.GetOrigin()
+    )
 
 
 def test_decompress(folder):
     call(folder, "decompress", "packed.vti", "unpacked.vti")
     assert same_bits(
-        values_of(progiso.read(folder / "unpacked.vti")), reference_values(progiso.read(folder / "packed.vti"))
+        values_of(progiso.read(folder / "unpacked.vti")),
+        reference_values(progiso.read(folder / "packed.vti")),
     )
 
 
@@ -59,7 +71,8 @@ def test_compress_appended(folder):
     call(folder, "compress", "plain.vti", "appended.vti", "--rate", 6, "--appended")
     assert b'encoding="raw"' in (folder / "appended.vti").read_bytes()
     assert same_bits(
-        reference_values(progiso.read(folder / "appended.vti")), reference_values(progiso.read(folder / "packed.vti"))
+        reference_values(progiso.read(folder / "appended.vti")),
+        reference_values(progiso.read(folder / "packed.vti")),
     )
 
 
@@ -93,8 +106,14 @@ def test_notes(folder):
         (("compress", "plain.vti", "noted.zfp"), "no spacing"),
         (("contour", "packed.vti", "noted.vtp", "--isovalue", 1e6), "range"),
         (("render", "packed.vti", "--isovalue", 1e6, "--size", "64x48"), "range"),
-        (("render", "packed.vti", "--isovalue", 0.1, "--size", "64x48", "--rate", 3), "--rate 3 is ignored"),
-        (("contour", "packed.vti", "noted.vtp", "--isovalue", 0.1, "--component", 1), "--component 1 is ignored"),
+        (
+            ("render", "packed.vti", "--isovalue", 0.1, "--size", "64x48", "--rate", 3),
+            "--rate 3 is ignored",
+        ),
+        (
+            ("contour", "packed.vti", "noted.vtp", "--isovalue", 0.1, "--component", 1),
+            "--component 1 is ignored",
+        ),
     ):
         done = run(folder, *arguments)
         assert done.returncode == 0, done.stderr
@@ -120,9 +139,9 @@ def test_render(folder):
     check_depth(depth, cast(volume, 0.1, camera, (200, 150), tolerances.SLACK))
     assert statistics["converged"] and statistics["size"] == [200, 150]
     seen = statistics["camera"]
-    assert seen["position"] == pytest.approx(camera.position) and seen["focal_point"] == pytest.approx(
-        camera.focal_point
-    )
+    assert seen["position"] == pytest.approx(camera.position) and seen[
+        "focal_point"
+    ] == pytest.approx(camera.focal_point)
     assert seen["view_up"] == [0, 1, 0] and seen["view_angle"] == 50 and seen["parallel"] is False
     check_memory(image, statistics)
 
@@ -133,7 +152,10 @@ def test_render_several_isovalues(folder):
     inner, _ = render(folder, *arguments, "--color", "#ff0000")
     look = ("--color", "#ff0000", "--color", "#00ff00", "--opacity", 1, "--opacity", 0.5)
     both, _ = render(folder, *arguments, "--isovalue", -0.3, *look)
-    assert np.isfinite(both).sum() > np.isfinite(inner).sum() and np.isfinite(both[np.isfinite(inner)]).all()
+    assert (
+        np.isfinite(both).sum() > np.isfinite(inner).sum()
+        and np.isfinite(both[np.isfinite(inner)]).all()
+    )
     pixels = read_png(folder / "out.png")
     front = both < inner - 0.1
     assert pixels[front][:, 1].mean() > 30 > pixels[~np.isfinite(both)].max()
@@ -141,7 +163,9 @@ def test_render_several_isovalues(folder):
 
 def test_speculation_and_memory_budget_change_no_depth(folder):
     """Speculation only saves passes; with little memory the image is the same."""
-    progiso.save(progiso.compress(make_image(blobs((90, 80, 100), 3, waves=6)), 6), folder / "large.vti")
+    progiso.save(
+        progiso.compress(make_image(blobs((90, 80, 100), 3, waves=6)), 6), folder / "large.vti"
+    )
     arguments = ("large.vti", "--size", "160x120", "--orbit", "2/5")
     whole, at_once = render(folder, *arguments)
     little = (*arguments, "--memory-budget", "2M", "--detailed")
@@ -169,7 +193,9 @@ def test_render_plain_at_a_rate(folder):
 
 
 def test_render_raw_by_its_name(folder):
-    depth, statistics = render(folder, "blobs_44x36x40_float32.raw", "--size", "120x90", "--orbit", "0/3")
+    depth, statistics = render(
+        folder, "blobs_44x36x40_float32.raw", "--size", "120x90", "--orbit", "0/3"
+    )
     volume = reference_volume(progiso.compress(make_image(blobs((40, 36, 44), 3)), 8))
     check_depth(depth, cast(volume, 0.1, orbit(volume, 0, 3), (120, 90), tolerances.SLACK))
 
@@ -179,9 +205,21 @@ def test_render_in_parallel_projection(folder):
     depth, statistics = render(folder, "packed.vti", "--size", "120x90", "--parallel")
     seen = statistics["camera"]
     assert seen["parallel"] is True
-    camera = Camera(seen["position"], seen["focal_point"], seen["view_up"], parallel_scale=seen["parallel_scale"])
+    camera = Camera(
+        seen["position"],
+        seen["focal_point"],
+        seen["view_up"],
+        parallel_scale=seen["parallel_scale"],
+    )
     check_depth(
-        depth, cast(reference_volume(progiso.read(folder / "packed.vti")), 0.1, camera, (120, 90), tolerances.SLACK)
+        depth,
+        cast(
+            reference_volume(progiso.read(folder / "packed.vti")),
+            0.1,
+            camera,
+            (120, 90),
+            tolerances.SLACK,
+        ),
     )
 
 
@@ -218,17 +256,32 @@ FAILURES = {
     "decompress plain": (["decompress", "plain.vti", "x.vti"], "compressed"),
     "size": (["render", "packed.vti", "--isovalue", "0", "--size", "0x5"], "0x5"),
     "orbit": (["render", "packed.vti", "--isovalue", "0", "--orbit", "5/5"], "5/5"),
-    "orbit and zoom": (["render", "packed.vti", "--isovalue", "0", "--orbit", "0/5", "--zoom", "2"], "--zoom"),
-    "orbit and parallel": (["render", "packed.vti", "--isovalue", "0", "--orbit", "0/5", "--parallel"], "--parallel"),
+    "orbit and zoom": (
+        ["render", "packed.vti", "--isovalue", "0", "--orbit", "0/5", "--zoom", "2"],
+        "--zoom",
+    ),
+    "orbit and parallel": (
+        ["render", "packed.vti", "--isovalue", "0", "--orbit", "0/5", "--parallel"],
+        "--parallel",
+    ),
     "zfp header": (["info", "packed.vti", "--zfp-header", "4x4x4:8"], "--zfp-header"),
     "budget": (["render", "packed.vti", "--isovalue", "0", "--memory-budget", "1000"], "at least"),
     "budget's unit": (["render", "packed.vti", "--isovalue", "0", "--memory-budget", "3T"], "3T"),
     "isovalue": (["render", "packed.vti", "--isovalue", "nan"], "isovalue"),
-    "opacities": (["render", "packed.vti", "--isovalue", "0", "--opacity", "1", "--opacity", "0.5"], "opacity: 2 for 1"),
-    "colours": (["render", "packed.vti", "--isovalue", "0", "--color", "red", "--color", "tan"], "color: 2 for 1"),
+    "opacities": (
+        ["render", "packed.vti", "--isovalue", "0", "--opacity", "1", "--opacity", "0.5"],
+        "opacity: 2 for 1",
+    ),
+    "colours": (
+        ["render", "packed.vti", "--isovalue", "0", "--color", "red", "--color", "tan"],
+        "color: 2 for 1",
+    ),
     "a text": (["info", "text.txt"], "text.txt"),
     "a folder": (["info", "."], "folder"),
-    "a picture's suffix": (["render", "packed.vti", "--isovalue", "0", "--output", "x.jpg"], ".png"),
+    "a picture's suffix": (
+        ["render", "packed.vti", "--isovalue", "0", "--output", "x.jpg"],
+        ".png",
+    ),
     "output": (["compress", "plain.vti", "nowhere/x.vti"], "nowhere"),
     "appended": (["compress", "plain.vti", "x.zfp", "--appended"], "x.zfp"),
 }
@@ -254,7 +307,11 @@ def gyroid(n, k):
     """Compute gyroid and noise as their definition says, without any of the project's shortcuts."""
     z, y, x = np.meshgrid(*[np.linspace(-1, 1, n)] * 3, indexing="ij")
     w = np.pi * k
-    field = np.sin(w * x) * np.cos(w * y) + np.sin(w * y) * np.cos(w * z) + np.sin(w * z) * np.cos(w * x)
+    field = (
+        np.sin(w * x) * np.cos(w * y)
+        + np.sin(w * y) * np.cos(w * z)
+        + np.sin(w * z) * np.cos(w * x)
+    )
     rng = np.random.default_rng(7)
     t = np.linspace(0, 1, n)
     total = np.zeros_like(field)
@@ -287,7 +344,9 @@ def test_generators_make_what_can_be_shown(folder):
     for name, generator in GENERATORS.items():
         assert name in listed
         command = [sys.executable, "-m", "progiso", "data", name, "--size", "24"]
-        done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=True)
+        done = subprocess.run(
+            command, cwd=folder, env=environment, capture_output=True, text=True, check=True
+        )
         values = values_of(progiso.read(done.stdout.strip()))
         assert values.shape == (24, 24, 24)
         assert values.min() < generator.isovalues[0] < values.max()

@@ -1,7 +1,6 @@
 """Another array or volume gives the surface its colours."""
 
 import numpy as np
-import progiso
 import pytest
 from oracle.caster import Camera
 from scenes import CACHED, Scene
@@ -9,6 +8,8 @@ from support import blobs, make_image, vtk_messages
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction
+
+import progiso
 
 N, RADIUS, SIZE = 40, 14.0, (120, 100)
 CENTER = (N - 1) / 2
@@ -33,7 +34,16 @@ def table(low=(0, 0, 1), high=(1, 0, 0)):
 
 
 def scene_of(image, lit=False, opacity=1.0, colors=None, **settings):
-    scene = Scene(image, RADIUS, CAMERA, SIZE, lit=lit, Rate=16.0, ColorLookupTable=colors or table(), **settings)
+    scene = Scene(
+        image,
+        RADIUS,
+        CAMERA,
+        SIZE,
+        lit=lit,
+        Rate=16.0,
+        ColorLookupTable=colors or table(),
+        **settings,
+    )
     opacities = vtkPiecewiseFunction()
     opacities.AddPoint(RADIUS, opacity)
     scene.volume.GetProperty().SetScalarOpacity(opacities)
@@ -89,10 +99,21 @@ def test_same_from_a_cache_and_from_port_1(lit, opacity):
 
 
 def test_a_small_cache_does_not_matter():
-    field, colors = make_image(blobs((48, 56, 64))), progiso.compress(make_image(blobs((48, 56, 64), seed=5)), 8)
+    field, colors = (
+        make_image(blobs((48, 56, 64))),
+        progiso.compress(make_image(blobs((48, 56, 64), seed=5)), 8),
+    )
     camera = Camera((32.0, 28.0, 140.0), (32.0, 28.0, 24.0), (0.0, 1.0, 0.0))
     scenes = [
-        Scene(field, 0.1, camera, lit=True, ColorInputData=colors, ColorLookupTable=table(), **settings)
+        Scene(
+            field,
+            0.1,
+            camera,
+            lit=True,
+            ColorInputData=colors,
+            ColorLookupTable=table(),
+            **settings,
+        )
         for settings in ({}, {**CACHED, "MemoryBudget": 3_000_000})
     ]
     pictures = [picture_of(scene) for scene in scenes]
@@ -110,7 +131,9 @@ def test_other_colours_decode_nothing(opacity):
     hit = np.isfinite(scene.depth())
     assert before[hit][:, 0].max() > 50 and after[hit][:, 1].min() > 50
     decoded = sum(p["decoded_blocks"] for p in scene.statistics()["passes"])
-    assert decoded == 0 or opacity == 1.0  # an opaque image keeps its hits, and with them the first image's passes
+    assert (
+        decoded == 0 or opacity == 1.0
+    )  # an opaque image keeps its hits, and with them the first image's passes
 
 
 def test_errors():

@@ -11,12 +11,13 @@ import time
 import zlib
 
 import numpy as np
-import progiso
-import progiso.io
 import pytest
-from progiso import slab_files
 from support import PEAK, blobs, make_image, stream_of
 from test_slabs import check_same
+
+import progiso
+import progiso.io
+from progiso import slab_files
 
 SHAPE = (13, 7, 9)  # slices, rows, columns
 
@@ -32,7 +33,16 @@ def write_raw(folder, kind):
     return path
 
 
-def write_nrrd(folder, encoding="raw", kind="<i2", components=1, detached=False, before=b"", byte_skip=0, line_skip=0):
+def write_nrrd(
+    folder,
+    encoding="raw",
+    kind="<i2",
+    components=1,
+    detached=False,
+    before=b"",
+    byte_skip=0,
+    line_skip=0,
+):
     """Fields, then what `before` says, then the samples, encoded."""
     encode = {"raw": bytes, "gzip": gzip.compress, "bzip2": bz2.compress}[encoding]
     sizes, axes = "9 7 13", "(1,0,0) (0,2,0) (0,0.5,3)"
@@ -50,7 +60,9 @@ def write_nrrd(folder, encoding="raw", kind="<i2", components=1, detached=False,
         f"space directions: {axes}",
         "space origin: (4,5,6)",
     ]
-    header += [f"byte skip: {byte_skip}"] * bool(byte_skip) + [f"line skip: {line_skip}"] * bool(line_skip)
+    header += [f"byte skip: {byte_skip}"] * bool(byte_skip) + [f"line skip: {line_skip}"] * bool(
+        line_skip
+    )
     lines = b"".join(b"line %d\n" % i for i in range(line_skip))
     skipped = b"x" * max(0, byte_skip)
     data = lines + encode(skipped + before + values_as(kind, components).tobytes())
@@ -63,9 +75,17 @@ def write_nrrd(folder, encoding="raw", kind="<i2", components=1, detached=False,
     return path
 
 
-def write_metaimage(folder, kind="<i2", components=1, detached=False, packed=False, header_size=None):
+def write_metaimage(
+    folder, kind="<i2", components=1, detached=False, packed=False, header_size=None
+):
     kind = np.dtype(kind)
-    element = {"i2": "MET_SHORT", "f4": "MET_FLOAT", "u1": "MET_UCHAR", "i1": "MET_CHAR", "f8": "MET_DOUBLE"}
+    element = {
+        "i2": "MET_SHORT",
+        "f4": "MET_FLOAT",
+        "u1": "MET_UCHAR",
+        "i1": "MET_CHAR",
+        "f8": "MET_DOUBLE",
+    }
     data = values_as(kind, components).tobytes()
     data = zlib.compress(data) if packed else data
     header = {
@@ -93,13 +113,19 @@ def write_metaimage(folder, kind="<i2", components=1, detached=False, packed=Fal
     return path
 
 
-def write_nifti(folder, suffix=".nii", kind="<i2", slope=None, flipped=False, times=1, second=False):
+def write_nifti(
+    folder, suffix=".nii", kind="<i2", slope=None, flipped=False, times=1, second=False
+):
     nibabel = pytest.importorskip("nibabel")
     values = np.stack([values_as(kind).T + t for t in range(times)], axis=-1).astype(kind)
     affine = np.array([[0, -2, 0, 4], [1, 0, 0, 5], [0, 0, 3, 6], [0, 0, 0, 1.0]])
     if flipped:
         affine[:3, 0] *= -1
-    make, header = (nibabel.Nifti2Image, nibabel.Nifti2Header) if second else (nibabel.Nifti1Image, nibabel.Nifti1Header)
+    make, header = (
+        (nibabel.Nifti2Image, nibabel.Nifti2Header)
+        if second
+        else (nibabel.Nifti1Image, nibabel.Nifti1Header)
+    )
     header = header(endianness=np.dtype(kind).str[0] if np.dtype(kind).str[0] in "<>" else "<")
     header.set_data_dtype(kind)
     image = make(values[..., 0] if times == 1 else values, affine, header)
@@ -111,7 +137,10 @@ def write_nifti(folder, suffix=".nii", kind="<i2", slope=None, flipped=False, ti
 
 
 FILES = {
-    **{f"raw {kind}": (write_raw, {"kind": kind}) for kind in ("uint8", "int16", "uint32", "float32", "float64")},
+    **{
+        f"raw {kind}": (write_raw, {"kind": kind})
+        for kind in ("uint8", "int16", "uint32", "float32", "float64")
+    },
     "nrrd": (write_nrrd, {}),
     "nrrd big": (write_nrrd, {"kind": ">f4"}),
     "nrrd gzip": (write_nrrd, {"encoding": "gzip"}),
@@ -162,7 +191,9 @@ def test_equals_reading_whole(case, tmp_path, monkeypatch):
         assert volume.GetSpacing() == image.GetSpacing() and volume.GetOrigin() == image.GetOrigin()
         for row in range(3):
             for column in range(3):
-                mine, theirs = (i.GetDirectionMatrix().GetElement(row, column) for i in (volume, image))
+                mine, theirs = (
+                    i.GetDirectionMatrix().GetElement(row, column) for i in (volume, image)
+                )
                 assert mine == theirs
 
 
@@ -201,7 +232,10 @@ BAD_FILES = {
     "nrrd": (lambda folder: cut(write_nrrd(folder), 0.6), "truncated: it ends in slice"),
     "nrrd gzip": (lambda folder: cut(write_nrrd(folder, "gzip"), 0.6), "damaged|truncated"),
     "mha": (lambda folder: cut(write_metaimage(folder), 0.6), "truncated: it ends in slice"),
-    "mha packed": (lambda folder: cut(write_metaimage(folder, packed=True), 0.6), "damaged|truncated"),
+    "mha packed": (
+        lambda folder: cut(write_metaimage(folder, packed=True), 0.6),
+        "damaged|truncated",
+    ),
     "nii": (lambda folder: cut(write_nifti(folder), 0.6), "truncated: it ends in slice"),
     "nii.gz": (lambda folder: cut(write_nifti(folder, ".nii.gz"), 0.6), "damaged|truncated"),
     "raw": (lambda folder: cut(write_raw(folder, "int16"), 0.6), "announces"),
@@ -217,7 +251,11 @@ def test_damaged_files_are_named(case, tmp_path):
         progiso.compress_file(path)
     (tmp_path / "out").mkdir()
     done = subprocess.run(command(path, tmp_path / "out" / "x.vti"), capture_output=True, text=True)
-    assert done.returncode == 1 and len(done.stderr.strip().splitlines()) == 1 and path.name in done.stderr
+    assert (
+        done.returncode == 1
+        and len(done.stderr.strip().splitlines()) == 1
+        and path.name in done.stderr
+    )
     assert not list((tmp_path / "out").iterdir())
 
 
@@ -248,7 +286,16 @@ SIDES = (512, 512, 400)  # of float32: 400 MiB, which take no place on the disk
 
 
 def command(source, target, rate=1):
-    return [sys.executable, "-m", "progiso", "compress", str(source), str(target), "--rate", str(rate)]
+    return [
+        sys.executable,
+        "-m",
+        "progiso",
+        "compress",
+        str(source),
+        str(target),
+        "--rate",
+        str(rate),
+    ]
 
 
 def sparse(folder, kind):
@@ -303,7 +350,9 @@ def test_memory_is_that_of_slabs(kind, tmp_path):
     """400 MiB of samples and 12.5 MiB of stream in less than 130; 45 are usual, 82 of gzip; reading whole takes 414."""
     path = sparse(tmp_path, kind)
     arguments = command(path, tmp_path / "out.vti")[3:]
-    done = subprocess.run([sys.executable, "-c", MEASURED, *arguments], capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-c", MEASURED, *arguments], capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stderr
     assert int(done.stdout.split()[-1]) < 130 * 2**20
     volume = progiso.read(tmp_path / "out.vti")
@@ -313,7 +362,9 @@ def test_memory_is_that_of_slabs(kind, tmp_path):
 def is_reading(process, path):
     """Whether a process holds a file open."""
     try:
-        return any(link.resolve() == path for link in pathlib.Path(f"/proc/{process.pid}/fd").iterdir())
+        return any(
+            link.resolve() == path for link in pathlib.Path(f"/proc/{process.pid}/fd").iterdir()
+        )
     except FileNotFoundError:
         return False
 
@@ -325,7 +376,9 @@ def test_interrupted_leaves_nothing(tmp_path):
     with open(source, "wb") as file:
         file.truncate(4 * 1024**3)
     (tmp_path / "out").mkdir()
-    process = subprocess.Popen(command(source, tmp_path / "out" / "x.vti"), stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        command(source, tmp_path / "out" / "x.vti"), stderr=subprocess.PIPE, text=True
+    )
     while process.poll() is None and not is_reading(process, source):
         time.sleep(0.01)
     process.send_signal(signal.SIGINT)

@@ -4,12 +4,22 @@ import pathlib
 import re
 
 import numpy as np
-import progiso
 import pytest
 import tolerances
 from layers import blend, capped, crossings_of
 from oracle.caster import Camera
-from stages import BACKGROUND, SIZE, Stage, both, check_like_vtk, check_scene_like_vtk, far_apart, matrix_of, paint, picture_of
+from stages import (
+    BACKGROUND,
+    SIZE,
+    Stage,
+    both,
+    check_like_vtk,
+    check_scene_like_vtk,
+    far_apart,
+    matrix_of,
+    paint,
+    picture_of,
+)
 from support import blobs, make_image, reference_volume, vtk_messages
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import reference, vtkAffineTypeFloat64Array
@@ -33,6 +43,8 @@ from vtkmodules.vtkRenderingOpenGL2 import (
     vtkTranslucentPass,
     vtkVolumetricPass,
 )
+
+import progiso
 
 RED, GREEN, BLUE = (0.9, 0.2, 0.1), (0.2, 0.8, 0.3), (0.3, 0.4, 1.0)
 OPAQUE = {0.1: (*GREEN, 1.0)}
@@ -117,10 +129,16 @@ def visible_triangles(image):
     """VTK's triangles of the cells that VTK calls visible; of cell data, of those between the centres of such."""
     seen = np.array([image.IsCellVisible(i) for i in range(image.GetNumberOfCells())], bool)
     centres = image.GetCellData().GetArray("field")
-    part = make_image(vtk_to_numpy(centres or image.GetPointData().GetArray("field")).reshape(SHAPE), origin=[bool(centres) / 2] * 3)
+    part = make_image(
+        vtk_to_numpy(centres or image.GetPointData().GetArray("field")).reshape(SHAPE),
+        origin=[bool(centres) / 2] * 3,
+    )
     if centres:
         hidden = ~seen.reshape(SHAPE)
-        corners = [hidden[tuple(slice(c, n - 1 + c) for c, n in zip(corner, SHAPE))] for corner in np.ndindex(2, 2, 2)]
+        corners = [
+            hidden[tuple(slice(c, n - 1 + c) for c, n in zip(corner, SHAPE))]
+            for corner in np.ndindex(2, 2, 2)
+        ]
         seen = ~np.any(corners, axis=0).ravel()
     flags = numpy_to_vtk(seen.astype(float), deep=True)
     flags.SetName("visible")
@@ -154,8 +172,13 @@ def test_blanking(kind):
     picture = ours.picture()
     check_like_vtk(picture, theirs.picture())
     whole = Stage(True)
-    show(whole, progiso.compress(make_image(blobs(SHAPE, 12, waves=2), cells=kind == "cell data"), 24))
-    assert far_apart(picture, whole.picture())[0] > 2 * tolerances.VTK_PIXELS, "hardly anything that is seen is hidden"
+    show(
+        whole,
+        progiso.compress(make_image(blobs(SHAPE, 12, waves=2), cells=kind == "cell data"), 24),
+    )
+    assert far_apart(picture, whole.picture())[0] > 2 * tolerances.VTK_PIXELS, (
+        "hardly anything that is seen is hidden"
+    )
 
 
 def test_the_mapper_takes_a_uniform_grid_itself():
@@ -214,9 +237,16 @@ def test_a_narrow_colour_is_not_smeared():
     """Colours come from the functions themselves, not from a table over the range of values."""
     values = 1e4 * blobs(SHAPE, 12, waves=2)
     stage = Stage(True)
-    show(stage, progiso.compress(make_image(values), 24), {999.0: (*RED, 1.0), 1000.0: (*GREEN, 1.0), 1001.0: (*BLUE, 1.0)})
+    show(
+        stage,
+        progiso.compress(make_image(values), 24),
+        {999.0: (*RED, 1.0), 1000.0: (*GREEN, 1.0), 1001.0: (*BLUE, 1.0)},
+    )
     picture = stage.picture()[np.isfinite(progiso.depth(stage.mapper))]
-    shares = [(np.abs(picture - 255 * np.array(rgb)).max(axis=1) <= 1).mean() for rgb in (RED, GREEN, BLUE)]
+    shares = [
+        (np.abs(picture - 255 * np.array(rgb)).max(axis=1) <= 1).mean()
+        for rgb in (RED, GREEN, BLUE)
+    ]
     assert sum(shares) == 1 and min(shares[0], shares[2]) > 0.2
 
 
@@ -325,7 +355,9 @@ def planes(*normals):
 
 
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
-@pytest.mark.parametrize("normals", [[(1, 0, 0)], [(0.6, -0.5, 0.3)], [(1, 0.2, 0), (0, -1, 0.4), (0.1, 0, 1)]])
+@pytest.mark.parametrize(
+    "normals", [[(1, 0, 0)], [(0.6, -0.5, 0.3)], [(1, 0.2, 0), (0, -1, 0.4), (0.1, 0, 1)]]
+)
 @pytest.mark.parametrize("matrix", [None, TURNED @ STRETCHED])
 def test_clipping_planes(image, surfaces, normals, matrix):
     def build(stage):
@@ -400,12 +432,16 @@ def test_cropping_and_clipping_of_a_moved_volume(image):
     mapper.AddClippingPlane(plane)
     picture = stage.picture()
     camera, volume = Camera.from_vtk(stage.camera), reference_volume(image, TURNED)
-    crossings = crossings_of(volume, list(NESTED), camera, SIZE, cropping=(PLANES, REGIONS["inverted cross"]))
+    crossings = crossings_of(
+        volume, list(NESTED), camera, SIZE, cropping=(PLANES, REGIONS["inverted cross"])
+    )
     origins, directions = camera.rays(SIZE)
     world = origins[crossings.ray] + crossings.depth[:, None] * directions[crossings.ray]
     crossings = crossings.only((world - plane.GetOrigin()) @ np.array(plane.GetNormal()) > 0)
     model = blend(crossings, list(NESTED.values()), BACKGROUND, SIZE)
-    assert (np.abs(picture - model).max(axis=2) > tolerances.LAYERS_LEVELS).mean() <= tolerances.LAYERS_PIXELS
+    assert (
+        np.abs(picture - model).max(axis=2) > tolerances.LAYERS_LEVELS
+    ).mean() <= tolerances.LAYERS_PIXELS
 
 
 # --- where the volume is, and the camera -------------------------------------------------------------------------------------
@@ -437,7 +473,11 @@ def test_oriented_image(spacing):
     """A direction matrix, an origin, and an extent that does not begin at 0."""
     direction = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))[0]
     values = make_image(
-        blobs(SHAPE, 12, waves=2), origin=(3, -4, 5), spacing=spacing, direction=direction, extent_start=(2, -7, 4)
+        blobs(SHAPE, 12, waves=2),
+        origin=(3, -4, 5),
+        spacing=spacing,
+        direction=direction,
+        extent_start=(2, -7, 4),
     )
     compressed = progiso.compress(values, 16)
     check_scene_like_vtk(lambda stage: show(stage, compressed, NESTED))
@@ -456,7 +496,12 @@ def test_from_perspective_to_parallel(image):
 
 @pytest.mark.parametrize(
     "spacing, matrix, angle",
-    [((1, 1, 1), None, 60), ((1e-3, 1e-3, 1e-3), None, 60), ((1, 1, 1), TURNED, 60), ((1, 1, 1), STRETCHED, 60)],
+    [
+        ((1, 1, 1), None, 60),
+        ((1e-3, 1e-3, 1e-3), None, 60),
+        ((1, 1, 1), TURNED, 60),
+        ((1, 1, 1), STRETCHED, 60),
+    ],
 )
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
 def test_camera_inside(spacing, matrix, angle, surfaces):
@@ -566,7 +611,9 @@ def test_multisampling(image, surfaces):
 
 
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
-@pytest.mark.parametrize("kind", ["CrystalEyes", "Left", "Right", "Anaglyph", "SplitViewportHorizontal"])
+@pytest.mark.parametrize(
+    "kind", ["CrystalEyes", "Left", "Right", "Anaglyph", "SplitViewportHorizontal"]
+)
 def test_stereo(cube, surfaces, kind):
     """Beside triangles: VTK's mapper has an eye's rays go on within the volume as from between the eyes."""
     ours, theirs, mono = Stage(True), Stage(False), Stage(True)
@@ -644,7 +691,9 @@ def test_render_passes(image, surfaces):
 
     def build_by_passes(stage):
         build(stage)
-        sequence = passes(vtkLightsPass, vtkOpaquePass, vtkTranslucentPass, vtkVolumetricPass, vtkOverlayPass)
+        sequence = passes(
+            vtkLightsPass, vtkOpaquePass, vtkTranslucentPass, vtkVolumetricPass, vtkOverlayPass
+        )
         stage.renderer.SetPass(sequence)
 
     plain = Stage(True)
@@ -663,7 +712,9 @@ def test_depth_formats(image, surfaces, depths):
         scene.renderer.AddActor(ball(11))
     frame = vtkFramebufferPass()
     frame.SetDepthFormat(getattr(vtkTextureObject, depths))
-    frame.SetDelegatePass(passes(vtkLightsPass, vtkOpaquePass, vtkTranslucentPass, vtkVolumetricPass))
+    frame.SetDelegatePass(
+        passes(vtkLightsPass, vtkOpaquePass, vtkTranslucentPass, vtkVolumetricPass)
+    )
     stage.renderer.SetPass(frame)
     check_like_vtk(stage.picture(), plain.picture())
 
@@ -759,7 +810,9 @@ def test_translucent_surfaces_occlude_nothing(image):
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
 def test_cell_data(surfaces):
     """Values of cells are samples at their centres; VTK's draws them to the cells' outer faces, ours between the centres."""
-    compressed = progiso.compress(make_image(blobs(SHAPE, 12, waves=2), cells=True, spacing=(1, 1.5, 1)), 16)
+    compressed = progiso.compress(
+        make_image(blobs(SHAPE, 12, waves=2), cells=True, spacing=(1, 1.5, 1)), 16
+    )
 
     def build(stage):
         mapper = show(stage, compressed, surfaces).GetMapper()
@@ -775,7 +828,19 @@ def test_cell_data(surfaces):
 
 
 @pytest.mark.parametrize(
-    "kind", ["uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float32", "float64"]
+    "kind",
+    [
+        "uint8",
+        "int8",
+        "uint16",
+        "int16",
+        "uint32",
+        "int32",
+        "uint64",
+        "int64",
+        "float32",
+        "float64",
+    ],
 )
 def test_data_types(kind):
     values = (60 + 50 * np.clip(blobs(SHAPE, 12, waves=2), -1, 1)).astype(kind)
@@ -941,7 +1006,9 @@ def switched(stage):
 def many(stage):
     for i in range(12):
         angle = 2 * np.pi * i / 12
-        stage.shine((i % 2, i % 3 / 2, 1), position=(60 * np.cos(angle), 60 * np.sin(angle), 40)).SetIntensity(0.2)
+        stage.shine(
+            (i % 2, i % 3 / 2, 1), position=(60 * np.cos(angle), 60 * np.sin(angle), 40)
+        ).SetIntensity(0.2)
 
 
 def light_kit(stage):
@@ -951,7 +1018,17 @@ def light_kit(stage):
     stage.kit.Update()
 
 
-LIGHTS = [directional, two_coloured, positional, attenuated, spot, camera_light, switched, many, light_kit]
+LIGHTS = [
+    directional,
+    two_coloured,
+    positional,
+    attenuated,
+    spot,
+    camera_light,
+    switched,
+    many,
+    light_kit,
+]
 
 
 @pytest.mark.parametrize("two_sided", [True, False])
@@ -1006,5 +1083,9 @@ def test_the_table_names_tests_that_are_there():
             if name.endswith(".py"):
                 file = name
             else:
-                named = file if f"def {name}(" in (here / file).read_text() else "test_conformance.py"
-                assert f"def {name}(" in (here / named).read_text(), f"{name} is in neither {file} nor {named}"
+                named = (
+                    file if f"def {name}(" in (here / file).read_text() else "test_conformance.py"
+                )
+                assert f"def {name}(" in (here / named).read_text(), (
+                    f"{name} is in neither {file} nor {named}"
+                )

@@ -5,17 +5,18 @@ import subprocess
 import sys
 
 import numpy as np
-import progiso
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from progiso import vtkZFPContour
 from progiso.data import SCANS, fetch
 from support import blobs, make_image, marschner_lobb, metadata, noise, values_of, vtk_messages
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkSMPTools
 from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+import progiso
+from progiso import vtkZFPContour
 
 ROTATION = np.linalg.qr(np.random.default_rng(0).normal(size=(3, 3)))[0]
 
@@ -47,7 +48,12 @@ def points_of(surface):
     if surface.GetNumberOfPoints() == 0:
         return np.zeros((0, 10), np.uint32)
     data = surface.GetPointData()
-    columns = [surface.GetPoints().GetData(), data.GetNormals(), data.GetVectors(), data.GetScalars()]
+    columns = [
+        surface.GetPoints().GetData(),
+        data.GetNormals(),
+        data.GetVectors(),
+        data.GetScalars(),
+    ]
     columns = [vtk_to_numpy(array).reshape(surface.GetNumberOfPoints(), -1) for array in columns]
     return np.hstack([column.astype(np.float32) for column in columns]).view(np.uint32)
 
@@ -111,7 +117,9 @@ def test_random_fields(shape, kind, seed, rate, quantiles, brick_size, spacing, 
     """Integers hit the isovalue exactly: points of several edges then coincide, and stay apart."""
     values = (noise(shape, seed) * 5 + 50).astype(kind)
     direction = ROTATION if turned else None
-    image = make_image(values, spacing=spacing, extent_start=start, origin=(1, -2, 3), direction=direction)
+    image = make_image(
+        values, spacing=spacing, extent_start=start, origin=(1, -2, 3), direction=direction
+    )
     isovalues = [float(np.quantile(values, q, method="nearest")) for q in quantiles]
     check_against_vtk(progiso.compress(image, rate), isovalues, brick_size)
 
@@ -120,7 +128,11 @@ def test_random_fields(shape, kind, seed, rate, quantiles, brick_size, spacing, 
 def test_world_coordinates(direction):
     """Extent, origin, spacing and direction, as FlyingEdges has them."""
     image = make_image(
-        blobs((30, 28, 34), 1), spacing=(0.5, 2, 1), origin=(9, 8, 7), extent_start=(5, -6, 7), direction=direction
+        blobs((30, 28, 34), 1),
+        spacing=(0.5, 2, 1),
+        origin=(9, 8, 7),
+        extent_start=(5, -6, 7),
+        direction=direction,
     )
     surface = check_against_vtk(progiso.compress(image, 8), [0.1], 8)
     assert surface.GetNumberOfPolys() > 1000
@@ -128,7 +140,9 @@ def test_world_coordinates(direction):
 
 def test_cell_data_lie_in_the_centres():
     values = blobs((20, 22, 24), 2)
-    cells = make_image(values, cells=True, spacing=(0.5, 2, 1), origin=(9, 8, 7), extent_start=(5, -6, 7))
+    cells = make_image(
+        values, cells=True, spacing=(0.5, 2, 1), origin=(9, 8, 7), extent_start=(5, -6, 7)
+    )
     ours = contoured(progiso.compress(cells, 8), [0.1], 8)
     origin = np.array([9, 8, 7]) + 0.5 * np.array([0.5, 2, 1])
     centres = make_image(values, spacing=(0.5, 2, 1), origin=origin, extent_start=(5, -6, 7))
@@ -152,10 +166,14 @@ def test_settings():
     for normals in (False, True):
         for gradients in (False, True):
             for scalars in (False, True):
-                surface = progiso.contour(volume, 0.1, normals=normals, gradients=gradients, scalars=scalars)
+                surface = progiso.contour(
+                    volume, 0.1, normals=normals, gradients=gradients, scalars=scalars
+                )
                 data = surface.GetPointData()
                 wanted = [normals and "Normals", gradients and "Gradients", scalars and "density"]
-                assert {data.GetArrayName(i) for i in range(data.GetNumberOfArrays())} == set(wanted) - {False}
+                assert {data.GetArrayName(i) for i in range(data.GetNumberOfArrays())} == set(
+                    wanted
+                ) - {False}
                 assert surface.GetFieldData().GetNumberOfArrays() == 0
 
 
@@ -256,7 +274,10 @@ def test_unaligned_memory():
 
 def test_plain_images_are_vtks():
     image = make_image(marschner_lobb(20))
-    check_same(progiso.contour(image, [0.4, 0.6], gradients=True), run(vtkFlyingEdges3D(), image, [0.4, 0.6]))
+    check_same(
+        progiso.contour(image, [0.4, 0.6], gradients=True),
+        run(vtkFlyingEdges3D(), image, [0.4, 0.6]),
+    )
     ours = progiso.contour(image, 0.4, rate=8, gradients=True)
     check_same(ours, contoured(progiso.compress(image, 8), [0.4]))
 

@@ -1,16 +1,18 @@
 """The decoder of the shaders against libzfp, bit for bit."""
 
 import numpy as np
-import progiso
 import pytest
-from progiso import vtkProgressiveIsosurfaceMapper
 from support import blobs, make_image, marschner_lobb, noise, reference_values
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkFloatArray
 from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
+import progiso
+from progiso import vtkProgressiveIsosurfaceMapper
+
 EXTREMES = np.array(
-    [0.0, -0.0, 1.0, -1.0, 3.4e38, -3.4e38, 1.2e-38, 1e-45, -1e-45, 1e-40, 255, 65535, 1e10, np.pi], np.float32
+    [0.0, -0.0, 1.0, -1.0, 3.4e38, -3.4e38, 1.2e-38, 1e-45, -1e-45, 1e-40, 255, 65535, 1e10, np.pi],
+    np.float32,
 )
 
 
@@ -34,9 +36,9 @@ def check(window, image):
     got = vtk_to_numpy(got)
     assert got.shape == expected.shape
     wrong = np.flatnonzero(got.view(np.uint32) != expected.view(np.uint32))
-    assert (
-        len(wrong) == 0
-    ), f"{len(wrong)} of {len(got)} samples, first at {wrong[0]}: {got[wrong[0]]!r}, not {expected[wrong[0]]!r}"
+    assert len(wrong) == 0, (
+        f"{len(wrong)} of {len(got)} samples, first at {wrong[0]}: {got[wrong[0]]!r}, not {expected[wrong[0]]!r}"
+    )
 
 
 def of(values, rate):
@@ -50,7 +52,32 @@ def test_all_rates(window, rate):
 
 
 @pytest.mark.parametrize(
-    "bits", [9, 10, 11, 12, 15, 17, 31, 32, 33, 50, 63, 65, 77, 100, 127, 129, 257, 333, 511, 513, 1001, 1999, 2047]
+    "bits",
+    [
+        9,
+        10,
+        11,
+        12,
+        15,
+        17,
+        31,
+        32,
+        33,
+        50,
+        63,
+        65,
+        77,
+        100,
+        127,
+        129,
+        257,
+        333,
+        511,
+        513,
+        1001,
+        1999,
+        2047,
+    ],
 )
 def test_any_bits_per_block(window, bits):
     """Blocks that start and end anywhere within a word."""
@@ -74,7 +101,9 @@ def test_extreme_values(window, seed):
     values[:4] = 0
     values[4:8, 4:8, 4:8] = rng.choice(EXTREMES)
     values[8:12] *= rng.uniform(0.5, 1, (4, 16, 16)).astype(np.float32)
-    values[12:] = (rng.normal(size=(4, 16, 16)) * 10.0 ** rng.uniform(-44, 37, (4, 16, 16))).astype(np.float32)
+    values[12:] = (rng.normal(size=(4, 16, 16)) * 10.0 ** rng.uniform(-44, 37, (4, 16, 16))).astype(
+        np.float32
+    )
     for rate in (1, 4, 9.25, 16, 32):
         check(window, of(values, rate))
 

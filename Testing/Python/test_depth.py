@@ -1,12 +1,13 @@
 """What the mapper sees against what the double-precision caster sees in the same decoded values."""
 
 import numpy as np
-import progiso
 import pytest
 import tolerances
 from oracle.caster import Camera, cast
 from scenes import Scene, check_depth, check_scene, orbit
 from support import blobs, make_image, marschner_lobb, noise, reference_volume
+
+import progiso
 
 rotation = np.linalg.qr(np.random.default_rng(8).normal(size=(3, 3)))[0]
 rotation *= np.linalg.det(rotation)
@@ -36,14 +37,22 @@ def test_white_noise(seed):
 
 
 @pytest.mark.parametrize(
-    "shape", [(2, 2, 2), (2, 9, 33), (5, 5, 5), (4, 4, 4), (8, 12, 16), (9, 13, 17), (3, 70, 6), (65, 2, 3)]
+    "shape",
+    [(2, 2, 2), (2, 9, 33), (5, 5, 5), (4, 4, 4), (8, 12, 16), (9, 13, 17), (3, 70, 6), (65, 2, 3)],
 )
 def test_shapes(shape):
     """Volumes of one cell, of one block, with partial blocks and partial groups of blocks on any side."""
     image = compressed(noise(shape, 11), 16)
     volume = reference_volume(image)
     for i in range(2):
-        check_scene(image, 0.1, orbit(volume, i, 3), (96, 72), grazing=tolerances.GRAZING_FRACTION_NOISE, volume=volume)
+        check_scene(
+            image,
+            0.1,
+            orbit(volume, i, 3),
+            (96, 72),
+            grazing=tolerances.GRAZING_FRACTION_NOISE,
+            volume=volume,
+        )
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -53,8 +62,15 @@ def test_random_cameras(seed):
     volume = reference_volume(image)
     for _ in range(3):
         direction = rng.normal(size=3)
-        position = np.array([21.5, 17.5, 19.5]) + direction / np.linalg.norm(direction) * rng.uniform(30, 400)
-        camera = Camera(tuple(position), tuple(rng.uniform(10, 30, 3)), tuple(rng.normal(size=3)), rng.uniform(5, 90))
+        position = np.array([21.5, 17.5, 19.5]) + direction / np.linalg.norm(
+            direction
+        ) * rng.uniform(30, 400)
+        camera = Camera(
+            tuple(position),
+            tuple(rng.uniform(10, 30, 3)),
+            tuple(rng.normal(size=3)),
+            rng.uniform(5, 90),
+        )
         check_scene(image, rng.uniform(-0.3, 0.3), camera, (120, 90), volume=volume)
 
 
@@ -65,7 +81,9 @@ def test_camera_inside(seed):
     volume = reference_volume(image)
     for _ in range(3):
         position = rng.uniform(2, 33, 3)
-        camera = Camera(tuple(position), tuple(position + rng.normal(size=3)), view_angle=rng.uniform(30, 110))
+        camera = Camera(
+            tuple(position), tuple(position + rng.normal(size=3)), view_angle=rng.uniform(30, 110)
+        )
         check_scene(image, rng.uniform(-0.3, 0.3), camera, (120, 90), volume=volume)
 
 
@@ -74,7 +92,9 @@ def test_parallel_projection(i):
     image = compressed(blobs((40, 36, 44), 5))
     volume = reference_volume(image)
     camera = orbit(volume, i, 3)
-    check_scene(image, 0.1, Camera(camera.position, camera.focal_point, parallel_scale=25.0), volume=volume)
+    check_scene(
+        image, 0.1, Camera(camera.position, camera.focal_point, parallel_scale=25.0), volume=volume
+    )
 
 
 @pytest.mark.parametrize("parallel_scale", [None, 12.0, 11.5])
@@ -113,7 +133,9 @@ GEOMETRIES = {
     "tiny": dict(spacing=(1e-9, 1e-9, 1e-9)),
     "huge": dict(spacing=(1e9, 1e9, 1e9)),
     "cells": dict(cells=True, spacing=(1, 0.5, 2), origin=(3, 2, 1)),
-    "cells rotated": dict(cells=True, direction=rotation, spacing=(1, 0.5, 2), extent_start=(2, 3, 4)),
+    "cells rotated": dict(
+        cells=True, direction=rotation, spacing=(1, 0.5, 2), extent_start=(2, 3, 4)
+    ),
 }
 
 
@@ -141,7 +163,9 @@ def test_user_matrix(kind, parallel):
         "sheared": [[1, 0.4, 0], [0, 1, 0.2], [0.1, 0, 1.5]],
         "mirrored": np.diag([1, 1, -1.0]),
     }[kind]
-    image = compressed(blobs((30, 27, 33), 8), direction=rotation, spacing=(1, 1.5, 0.8), origin=(1, 2, 3))
+    image = compressed(
+        blobs((30, 27, 33), 8), direction=rotation, spacing=(1, 1.5, 0.8), origin=(1, 2, 3)
+    )
     volume = reference_volume(image, matrix)
     camera = orbit(volume, 1, 3)
     if parallel:
@@ -190,7 +214,9 @@ def test_isovalue_equal_to_voxels(isovalue):
 def test_constant_volume_shows_nothing():
     image = compressed(np.full((12, 12, 12), 3.0))
     for isovalue in (2.9, 3.0, 3.1):
-        assert not np.isfinite(Scene(image, isovalue, orbit(reference_volume(image), 1, 3)).depth()).any()
+        assert not np.isfinite(
+            Scene(image, isovalue, orbit(reference_volume(image), 1, 3)).depth()
+        ).any()
 
 
 @pytest.mark.parametrize("isovalue", [-100.0, 100.0])

@@ -12,7 +12,6 @@ import time
 
 import gl_hooks
 import numpy as np
-import progiso
 import pytest
 from gl_hooks import gl, gl_errors, intercepted
 from scenes import CACHED
@@ -21,6 +20,8 @@ from support import blobs, make_image, vtk_messages
 from test_conformance import NESTED, OPAQUE, show
 from vtkmodules.vtkCommonCore import reference
 from vtkmodules.vtkRenderingCore import vtkRenderWindow
+
+import progiso
 
 HERE = pathlib.Path(__file__).resolve().parent
 MODES = {"whole": {}, "cached": CACHED}
@@ -85,7 +86,9 @@ def test_no_room(uncounted, image, settings, targets):
         if fault.count <= failures:
             break
         failures += 1
-        assert len(messages) == 1 and re.search("no room for .* bytes of|out of memory", messages[0]), messages
+        assert len(messages) == 1 and re.search(
+            "no room for .* bytes of|out of memory", messages[0]
+        ), messages
         assert "lower the memory budget, the rate or the image size" in messages[0]
         assert is_empty(picture) and not gl_errors()
         assert not stage.mapper.GetConverged()
@@ -106,10 +109,15 @@ def test_no_room_where_it_is_used(uncounted, image, settings):
         pending.append(gl_hooks.OUT_OF_MEMORY)
         original(*groups)
 
-    with intercepted("glDispatchCompute", dispatch), intercepted("glGetError", lambda of: pending.pop() if pending else of()):
+    with (
+        intercepted("glDispatchCompute", dispatch),
+        intercepted("glGetError", lambda of: pending.pop() if pending else of()),
+    ):
         messages, picture = messages_of(stage)
     (message,) = messages
-    assert "the GPU has run out of memory: lower" in message and is_empty(picture) and not gl_errors()
+    assert (
+        "the GPU has run out of memory: lower" in message and is_empty(picture) and not gl_errors()
+    )
     assert np.array_equal(stage.picture(), first)
 
 
@@ -167,7 +175,11 @@ def run(program, file=None, **environment):
     """Run a program in a process of its own; return what it prints."""
     program = program.format(path=[path for path in sys.path if path], file=file)
     done = subprocess.run(
-        [sys.executable, "-c", program], env={**os.environ, **environment}, capture_output=True, text=True, timeout=300
+        [sys.executable, "-c", program],
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        timeout=300,
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
@@ -178,13 +190,19 @@ def test_memory_that_is_really_not_there():
     if "vtkOSOpenGLRenderWindow" != vtkRenderWindow().GetClassName():
         pytest.skip("the memory of a GPU is not this process's; see Testing/gpu_faults.py")
     printed = run(REAL, PROGISO_GL_DEBUG="0")
-    assert re.fullmatch(r"ERR.*the GPU has no room for \d+ bytes of cache_values: lower.*", printed.strip(), re.DOTALL), printed
+    assert re.fullmatch(
+        r"ERR.*the GPU has no room for \d+ bytes of cache_values: lower.*",
+        printed.strip(),
+        re.DOTALL,
+    ), printed
 
 
 # --- the compiler ------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("file", ["BlockRanges.comp", "CastRays.comp", "PlanPass.comp", "Composite.frag"])
+@pytest.mark.parametrize(
+    "file", ["BlockRanges.comp", "CastRays.comp", "PlanPass.comp", "Composite.frag"]
+)
 def test_a_shader_does_not_compile(image, file):
     """For as long as that is so: one error a render, with the compiler's own words."""
     stage = Stage(True)
@@ -200,7 +218,10 @@ def test_a_shader_does_not_compile(image, file):
     with intercepted("glShaderSource", refuse):
         for _ in range(2):
             (message,), picture = messages_of(stage)
-            assert f"shader {file.split('.')[0]} does not build on this driver" in message and "no such luck" in message
+            assert (
+                f"shader {file.split('.')[0]} does not build on this driver" in message
+                and "no such luck" in message
+            )
             assert is_empty(picture) and not gl_errors() and not stage.mapper.GetConverged()
     assert np.ptp(stage.picture().reshape(-1, 3), axis=0).max() > 50
 
@@ -283,16 +304,26 @@ def test_plain_opengl_4_3(mesa, tmp_path):
     )
     full, floor = np.load(full), np.load(floor)
     later = {f"GL_{name}" for name in LATER}
-    assert version.split()[-1] == "4.3" and later & {*full["extensions"]} and not later & {*floor["extensions"]}
+    assert (
+        version.split()[-1] == "4.3"
+        and later & {*full["extensions"]}
+        and not later & {*floor["extensions"]}
+    )
     assert np.array_equal(full["pictures"], floor["pictures"])
 
 
 def test_opengl_below_4_3(mesa):
     """Without compute shaders: one error a render, which tells what is missing."""
     printed = run(
-        REFUSED, MESA_GL_VERSION_OVERRIDE="4.2", MESA_GLSL_VERSION_OVERRIDE="420", MESA_EXTENSION_OVERRIDE="-GL_ARB_compute_shader"
+        REFUSED,
+        MESA_GL_VERSION_OVERRIDE="4.2",
+        MESA_GLSL_VERSION_OVERRIDE="420",
+        MESA_EXTENSION_OVERRIDE="-GL_ARB_compute_shader",
     )
-    assert "needs OpenGL 4.3 (compute shaders), but this context offers 4.2 without GL_ARB_compute_shader" in printed
+    assert (
+        "needs OpenGL 4.3 (compute shaders), but this context offers 4.2 without GL_ARB_compute_shader"
+        in printed
+    )
 
 
 @pytest.mark.parametrize("closed", ["finalized", "destroyed"])
@@ -329,11 +360,15 @@ def test_debugging_is_silent(image, monkeypatch):
     monkeypatch.setenv("PROGISO_GL_DEBUG", "0")
     stage, found = Stage(True), []
     stage.render()
-    kind = ctypes.CFUNCTYPE(None, *[ctypes.c_uint] * 4, ctypes.c_int, ctypes.c_char_p, ctypes.c_void_p)
+    kind = ctypes.CFUNCTYPE(
+        None, *[ctypes.c_uint] * 4, ctypes.c_int, ctypes.c_char_p, ctypes.c_void_p
+    )
 
     @kind
     def listen(_source, type_, _id, severity, _length, text, _user):
-        if severity in (0x9146, 0x9147) or 0x824C <= type_ <= 0x824F:  # high and medium; errors to portability
+        if (
+            severity in (0x9146, 0x9147) or 0x824C <= type_ <= 0x824F
+        ):  # high and medium; errors to portability
             found.append(text)
 
     for switch in (0x92E0, 0x8242):  # debug output, and at once
@@ -341,7 +376,11 @@ def test_debugging_is_silent(image, monkeypatch):
     gl("glDebugMessageControl")(*[0x1100] * 3, 0, None, 1)  # all of it
     gl("glDebugMessageCallback")(ctypes.cast(listen, ctypes.c_void_p), None)
     try:
-        for surfaces, settings in ((OPAQUE, {}), (NESTED, {**CACHED, "DetailedStatistics": True}), (OPAQUE, CACHED)):
+        for surfaces, settings in (
+            (OPAQUE, {}),
+            (NESTED, {**CACHED, "DetailedStatistics": True}),
+            (OPAQUE, CACHED),
+        ):
             volume = show(stage, image, surfaces, **settings)
             volume.GetProperty().ShadeOn()
             for size in ((160, 128), (90, 70)):
@@ -397,7 +436,9 @@ def test_an_exception_in_an_observer(scene, event, capfd):
     def fail(_caller):
         raise Trouble("of the observer's own")
 
-    target = {"ProgressEvent": stage.mapper, "StartEvent": stage.volumes[0]}.get(event, stage.window)
+    target = {"ProgressEvent": stage.mapper, "StartEvent": stage.volumes[0]}.get(
+        event, stage.window
+    )
     done = observed(stage, event, fail, target)
     assert np.array_equal(stage.picture(), expected)
     assert done and "Trouble: of the observer's own" in capfd.readouterr().err
@@ -430,9 +471,13 @@ def other_window(stage, image):
 DEEDS = {
     "renders": lambda stage, image: stage.window.Render(),
     "renders another window": lambda stage, image: Stage(True).render(),
-    "renders the mapper in another window": lambda stage, image: other_window(stage, image).window.Render(),
+    "renders the mapper in another window": lambda stage, image: other_window(
+        stage, image
+    ).window.Render(),
     "releases": lambda stage, image: stage.mapper.ReleaseGraphicsResources(stage.window),
-    "changes the input": lambda stage, image: stage.mapper.SetInputData(make_image(blobs((20, 20, 20), 3))),
+    "changes the input": lambda stage, image: stage.mapper.SetInputData(
+        make_image(blobs((20, 20, 20), 3))
+    ),
     "changes the size": lambda stage, image: stage.window.SetSize(60, 50),
     "changes the isovalue": lambda stage, image: paint(stage.volumes[0], {0.3: (1, 0, 0, 1)}),
     "changes the budget": lambda stage, image: stage.mapper.SetMemoryBudget(1000),

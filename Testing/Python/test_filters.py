@@ -3,11 +3,9 @@
 import subprocess
 
 import numpy as np
-import progiso
 import pytest
 import tolerances
 from oracle import zfp_reference
-from progiso import vtkCompressedVolume, vtkImageZFPCompress, vtkImageZFPDecompress, vtkZFPReader, vtkZFPWriter
 from support import (
     blobs,
     make_image,
@@ -25,6 +23,15 @@ from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkIntArray
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkFiltersCore import vtkPointDataToCellData
 from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
+
+import progiso
+from progiso import (
+    vtkCompressedVolume,
+    vtkImageZFPCompress,
+    vtkImageZFPDecompress,
+    vtkZFPReader,
+    vtkZFPWriter,
+)
 
 RATES = [9 / 64, 0.5, 1, 1.5, 2, 3, 4, 5.25, 8, 12, 16, 31, 32]
 TYPES = ["i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", "f4", "f8"]
@@ -60,7 +67,9 @@ def test_stream_is_zfps_own(rate):
     assert same_bits(values_of(progiso.decompress(compressed)), reference_values(compressed))
 
 
-@pytest.mark.parametrize("shape", [(a, b, c) for a in (2, 4, 7) for b in (3, 5, 8) for c in (2, 6, 9)])
+@pytest.mark.parametrize(
+    "shape", [(a, b, c) for a in (2, 4, 7) for b in (3, 5, 8) for c in (2, 6, 9)]
+)
 def test_partial_blocks(shape):
     """Every remainder of four meets every other at the border."""
     values = noise(shape, 1)
@@ -73,7 +82,9 @@ def test_partial_blocks(shape):
 @pytest.mark.parametrize("threads", [1, 2, 3])
 def test_threads_do_not_show(threads):
     image = make_image(noise((33, 20, 18), 2))
-    assert stream_of(progiso.compress(image, 5, threads=threads)) == stream_of(progiso.compress(image, 5, threads=1))
+    assert stream_of(progiso.compress(image, 5, threads=threads)) == stream_of(
+        progiso.compress(image, 5, threads=1)
+    )
 
 
 @pytest.mark.parametrize("cells", [False, True])
@@ -99,7 +110,11 @@ def test_scalar_types(kind, cells):
 def test_geometry_is_kept():
     rotation = np.linalg.qr(np.random.default_rng(0).normal(size=(3, 3)))[0]
     image = make_image(
-        noise((5, 6, 7)), origin=(1, -2, 3), spacing=(0.5, 2, 1), direction=rotation, extent_start=(4, -3, 10)
+        noise((5, 6, 7)),
+        origin=(1, -2, 3),
+        spacing=(0.5, 2, 1),
+        direction=rotation,
+        extent_start=(4, -3, 10),
     )
     for result in (progiso.compress(image), progiso.decompress(progiso.compress(image))):
         assert result.GetExtent() == image.GetExtent() == (4, 10, -3, 2, 10, 14)
@@ -119,7 +134,9 @@ def test_array_and_component_are_chosen():
     image.GetPointData().AddArray(other)
     compressed = progiso.compress(image, 32, array="second", component=2)
     assert stream_of(compressed).startswith(zfp_reference.encode(second[..., 2], 32))
-    assert compressed.GetFieldData().GetAbstractArray("ProgIso.ZFP.ArrayName").GetValue(0) == "second"
+    assert (
+        compressed.GetFieldData().GetAbstractArray("ProgIso.ZFP.ArrayName").GetValue(0) == "second"
+    )
     assert metadata(compressed, "Component")[0] == 2
     assert stream_of(progiso.compress(image, 32)).startswith(zfp_reference.encode(first, 32))
 
@@ -167,11 +184,21 @@ def test_values_that_float32_cannot_hold(case):
     assert np.abs(restored - original).max() <= allowed
     about = progiso.describe(compressed)
     assert np.abs(np.subtract(about["range"], [original.min(), original.max()])).max() <= allowed
-    assert metadata(compressed, "Version")[0] == 2 and metadata(compressed, "Scale")[0] == about["scale"]
+    assert (
+        metadata(compressed, "Version")[0] == 2
+        and metadata(compressed, "Scale")[0] == about["scale"]
+    )
     assert (about["offset"] != 0) == (offset != 0)
 
 
-@pytest.mark.parametrize("values", [noise((6, 7, 5)).astype(float) + 12, np.full((4, 4, 4), 3.0), 1000 + np.arange(64).reshape(4, 4, 4)])
+@pytest.mark.parametrize(
+    "values",
+    [
+        noise((6, 7, 5)).astype(float) + 12,
+        np.full((4, 4, 4), 3.0),
+        1000 + np.arange(64).reshape(4, 4, 4),
+    ],
+)
 def test_values_that_float32_holds_keep_their_units(values):
     compressed = progiso.compress(make_image(values), 11)
     assert stream_of(compressed).startswith(zfp_reference.encode(values, 11))
@@ -288,8 +315,14 @@ DAMAGES = {
     "range": replace("Range", [0, float("nan")], vtkDoubleArray),
     "association": replace("Association", [7]),
     "an extent elsewhere": lambda image: image.SetExtent(1, 6, 0, 7, 3, 8),
-    "an extent of another size": lambda image: (image.SetExtent(0, 6, 0, 7, 0, 7), cover(image, (0, 7, 0, 7, 0, 6))),
-    "an extent beyond 32 bits": lambda image: (image.SetExtent(0, 6, 0, 7, 0, 7), cover(image, (-(2**31), 7) * 3)),
+    "an extent of another size": lambda image: (
+        image.SetExtent(0, 6, 0, 7, 0, 7),
+        cover(image, (0, 7, 0, 7, 0, 6)),
+    ),
+    "an extent beyond 32 bits": lambda image: (
+        image.SetExtent(0, 6, 0, 7, 0, 7),
+        cover(image, (-(2**31), 7) * 3),
+    ),
 }
 
 
@@ -324,7 +357,9 @@ def test_python_errors_name_the_argument():
 def test_vti_carries_the_stream_through_pyvista(tmp_path):
     """pyvista saves and reads a compressed volume untouched."""
     pyvista = pytest.importorskip("pyvista")
-    compressed = progiso.compress(make_image(noise((7, 8, 9)), origin=(1, 2, 3), extent_start=(5, 6, 7)), 3)
+    compressed = progiso.compress(
+        make_image(noise((7, 8, 9)), origin=(1, 2, 3), extent_start=(5, 6, 7)), 3
+    )
     pyvista.wrap(compressed).save(tmp_path / "volume.vti")
     read = pyvista.read(tmp_path / "volume.vti")
     assert stream_of(read) == stream_of(compressed)
@@ -347,7 +382,9 @@ def test_writer_against_the_tool(tmp_path, header, rate, lacking):
     assert writer.Write() == 1
     options = ["-h"] if header else ["-f", "-3", "7", "9", "6", "-r", str(rate)]
     subprocess.run(["zfp", "-q", *options, "-z", path, "-o", tmp_path / "raw"], check=True)
-    assert same_bits(np.fromfile(tmp_path / "raw", np.float32).reshape(6, 9, 7), reference_values(compressed))
+    assert same_bits(
+        np.fromfile(tmp_path / "raw", np.float32).reshape(6, 9, 7), reference_values(compressed)
+    )
 
 
 @pytest.mark.parametrize("header", [False, True])
@@ -360,7 +397,22 @@ def test_reader_against_the_tool(tmp_path, header, rate, lacking):
     options = ["-h"] if header else []
     path = tmp_path / "volume.zfp"
     subprocess.run(
-        ["zfp", "-q", *options, "-f", "-3", "7", "9", "6", "-r", str(rate), "-i", tmp_path / "raw", "-z", path],
+        [
+            "zfp",
+            "-q",
+            *options,
+            "-f",
+            "-3",
+            "7",
+            "9",
+            "6",
+            "-r",
+            str(rate),
+            "-i",
+            tmp_path / "raw",
+            "-z",
+            path,
+        ],
         check=True,
     )
     reader = vtkZFPReader()
@@ -390,7 +442,9 @@ def test_reader_puts_parts_together(tmp_path, header, rate):
     writer.SetWriteHeader(header)
     assert writer.Write() == 1
     dimensions = None if header else (65, 62, 61)
-    assert stream_of(progiso.read(tmp_path / "volume.zfp", dimensions, rate)) == stream_of(compressed)
+    assert stream_of(progiso.read(tmp_path / "volume.zfp", dimensions, rate)) == stream_of(
+        compressed
+    )
 
 
 @pytest.mark.parametrize("cells", [False, True])
@@ -428,7 +482,9 @@ def test_pieces_hold_the_blocks_of_the_whole(pieces, cells):
 @pytest.mark.parametrize("bits", [9, 64, 333, 2048])
 def test_cropping_keeps_blocks_as_they_are(bits):
     """Rows of blocks that begin at any bit of a word."""
-    compressed = progiso.compress(make_image(noise((21, 18, 30), 5), extent_start=(3, -4, 5)), bits / 64)
+    compressed = progiso.compress(
+        make_image(noise((21, 18, 30), 5), extent_start=(3, -4, 5)), bits / 64
+    )
     part, volume = vtkImageData(), vtkCompressedVolume()
     part.DeepCopy(compressed)
     part.SetExtent(17, 25, 5, 9, 12, 15)
@@ -455,20 +511,28 @@ def test_a_stream_of_another_piece_is_refused():
 
 def test_vti_with_appended_data(tmp_path):
     """Raw bytes behind the XML hold the same, in less."""
-    compressed = progiso.compress(make_image(noise((30, 31, 32)), origin=(1, 2, 3), extent_start=(5, 6, 7)), 8)
+    compressed = progiso.compress(
+        make_image(noise((30, 31, 32)), origin=(1, 2, 3), extent_start=(5, 6, 7)), 8
+    )
     progiso.save(compressed, tmp_path / "in_line.vti")
     progiso.save(compressed, tmp_path / "appended.vti", appended=True)
     read = progiso.read(tmp_path / "appended.vti")
     assert stream_of(read) == stream_of(compressed)
     assert read.GetExtent() == compressed.GetExtent() and read.GetOrigin() == (1, 2, 3)
-    assert (tmp_path / "appended.vti").stat().st_size < 0.8 * (tmp_path / "in_line.vti").stat().st_size
+    assert (tmp_path / "appended.vti").stat().st_size < 0.8 * (
+        tmp_path / "in_line.vti"
+    ).stat().st_size
     with pytest.raises(ValueError, match="appended"):
         progiso.save(compressed, tmp_path / "volume.zfp", appended=True)
 
 
 def test_reader_refuses_what_is_no_zfp_file(tmp_path):
     path = tmp_path / "bad.zfp"
-    for content, settings in ((b"not a zfp file", {}), (b"\0" * 10, {"DataDimensions": (8, 8, 8)}), (None, {})):
+    for content, settings in (
+        (b"not a zfp file", {}),
+        (b"\0" * 10, {"DataDimensions": (8, 8, 8)}),
+        (None, {}),
+    ):
         path.unlink(missing_ok=True)
         if content is not None:
             path.write_bytes(content)
@@ -477,7 +541,9 @@ def test_reader_refuses_what_is_no_zfp_file(tmp_path):
         for name, value in settings.items():
             getattr(reader, "Set" + name)(value)
         output, messages = run(reader)
-        assert sum("vtkZFPReader" in m and "returned failure" not in m for m in messages) == 1, messages
+        assert sum("vtkZFPReader" in m and "returned failure" not in m for m in messages) == 1, (
+            messages
+        )
         assert not vtkCompressedVolume.IsCompressed(output)
 
 

@@ -1,14 +1,12 @@
 """What is hidden, blanked points and cells and NaN, leaves clean holes, and nothing else changes."""
 
 import numpy as np
-import progiso
 import pytest
 import tolerances
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from layers import crossings_of, places
 from oracle.caster import Camera
-from progiso import vtkCompressedVolume, vtkImageZFPCompress
 from scenes import CACHED, Scene, least_budget, orbit
 from support import (
     blobs,
@@ -28,6 +26,9 @@ from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkImageData
 from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLImageDataWriter
 from vtkmodules.vtkRenderingCore import vtkLight
 
+import progiso
+from progiso import vtkCompressedVolume, vtkImageZFPCompress
+
 HIDDEN_POINT, HIDDEN_CELL = vtkDataSetAttributes.HIDDENPOINT, vtkDataSetAttributes.HIDDENCELL
 REFINED_CELL = vtkDataSetAttributes.REFINEDCELL
 SHAPE = (26, 31, 29)
@@ -37,7 +38,10 @@ SIZE = (120, 90)
 
 def blank(image, points=None, cells=None, flag=HIDDEN_CELL):
     """Hide points and cells, given as arrays [z, y, x] of booleans; return the image."""
-    for hidden, data, value in ((points, image.GetPointData(), HIDDEN_POINT), (cells, image.GetCellData(), flag)):
+    for hidden, data, value in (
+        (points, image.GetPointData(), HIDDEN_POINT),
+        (cells, image.GetCellData(), flag),
+    ):
         if hidden is not None:
             ghosts = numpy_to_vtk(np.where(hidden, value, 0).astype(np.uint8).ravel(), deep=True)
             ghosts.SetName(vtkDataSetAttributes.GhostArrayName())
@@ -85,18 +89,24 @@ def hidden_cells():
 
 def refined_cells():
     hidden = ball(fewer(SHAPE), 12, 0.2)
-    return progiso.compress(blank(make_image(blobs(SHAPE, 3)), cells=hidden, flag=REFINED_CELL), 12), hidden
+    return progiso.compress(
+        blank(make_image(blobs(SHAPE, 3)), cells=hidden, flag=REFINED_CELL), 12
+    ), hidden
 
 
 def hidden_cells_of_cell_data():
     hidden = speckles(SHAPE, 0.03)
-    return progiso.compress(blank(make_image(blobs(SHAPE, 3), cells=True), cells=hidden), 12), cells_of(hidden)
+    return progiso.compress(
+        blank(make_image(blobs(SHAPE, 3), cells=True), cells=hidden), 12
+    ), cells_of(hidden)
 
 
 def hidden_points_of_cell_data():
     points = ball([n + 1 for n in SHAPE], 11, 0.4)
     hidden = cells_of(points)
-    return progiso.compress(blank(make_image(blobs(SHAPE, 3), cells=True), points=points), 12), cells_of(hidden)
+    return progiso.compress(
+        blank(make_image(blobs(SHAPE, 3), cells=True), points=points), 12
+    ), cells_of(hidden)
 
 
 def nan_samples():
@@ -110,7 +120,14 @@ def all_together():
     return progiso.compress(image, 12, mask_nan=True), cells_of(points | nan) | cells
 
 
-KINDS = [hidden_points, hidden_cells, refined_cells, hidden_cells_of_cell_data, hidden_points_of_cell_data, nan_samples]
+KINDS = [
+    hidden_points,
+    hidden_cells,
+    refined_cells,
+    hidden_cells_of_cell_data,
+    hidden_points_of_cell_data,
+    nan_samples,
+]
 KINDS += [all_together]
 
 
@@ -130,7 +147,10 @@ def check_depth(scene, image, hidden, isovalues=(ISOVALUE,)):
     np.minimum.at(without, crossings.ray, crossings.depth)
     assert (expected != without.reshape(got.shape)).mean() > 0.02, "nothing that is seen is hidden"
     same = got == expected
-    near = np.abs(np.subtract(got, expected, out=np.zeros(got.shape), where=~same)) <= tolerances.DEPTH_VOXELS
+    near = (
+        np.abs(np.subtract(got, expected, out=np.zeros(got.shape), where=~same))
+        <= tolerances.DEPTH_VOXELS
+    )
     assert (~(same | near)).mean() <= tolerances.LAYERS_PIXELS
     return got
 
@@ -160,14 +180,20 @@ def test_the_mapper_hides_what_its_plain_input_does():
     """And follows what changes there."""
     values = blobs(SHAPE, 3)
     image = blank(make_image(values), ball(SHAPE, 9))
-    scene = Scene(image, ISOVALUE, orbit(reference_volume(progiso.compress(image)), 1, 4), SIZE, Rate=12)
+    scene = Scene(
+        image, ISOVALUE, orbit(reference_volume(progiso.compress(image)), 1, 4), SIZE, Rate=12
+    )
     before = scene.depth()
-    assert np.array_equal(before, Scene(progiso.compress(image, 12), ISOVALUE, scene.camera, SIZE).depth())
+    assert np.array_equal(
+        before, Scene(progiso.compress(image, 12), ISOVALUE, scene.camera, SIZE).depth()
+    )
     image.GetPointData().GetArray(vtkDataSetAttributes.GhostArrayName()).Fill(0)
     image.GetPointData().GetArray(vtkDataSetAttributes.GhostArrayName()).Modified()
     after = scene.depth()
     assert (after != before).any()
-    assert np.array_equal(after, Scene(progiso.compress(make_image(values), 12), ISOVALUE, scene.camera, SIZE).depth())
+    assert np.array_equal(
+        after, Scene(progiso.compress(make_image(values), 12), ISOVALUE, scene.camera, SIZE).depth()
+    )
 
 
 def test_nan_is_an_error_unless_it_is_hidden():
@@ -176,7 +202,11 @@ def test_nan_is_an_error_unless_it_is_hidden():
     scene = Scene(image, ISOVALUE, Camera((14, 14, 90), (14, 14, 12)), SIZE, Rate=12)
     with vtk_messages() as messages:
         scene.window.Render()
-    assert len(messages) == 1 and f"{hidden.sum()} NaN" in messages[0] and "MaskNonFinite" in messages[0]
+    assert (
+        len(messages) == 1
+        and f"{hidden.sum()} NaN" in messages[0]
+        and "MaskNonFinite" in messages[0]
+    )
     scene.mapper.MaskNonFiniteOn()
     check_depth(scene, progiso.compress(image, 12, mask_nan=True), cells_of(hidden))
 
@@ -188,10 +218,20 @@ def test_light_at_the_border_of_a_hole(make, cached):
     z, y, x = np.meshgrid(*[np.arange(n, dtype=np.float32) for n in SHAPE], indexing="ij")
     values = z + 0.4 * y + 0.3 * x
     hidden = make(SHAPE)
-    images = progiso.compress(make_image(values), 32), progiso.compress(blank(make_image(values), hidden), 32)
+    images = (
+        progiso.compress(make_image(values), 32),
+        progiso.compress(blank(make_image(values), hidden), 32),
+    )
     pictures = []
     for image in images:
-        scene = Scene(image, 20.3, Camera((14, 15, 80), (14, 15, 12), view_angle=25), SIZE, lit=True, DecodeWholeVolume=not cached)
+        scene = Scene(
+            image,
+            20.3,
+            Camera((14, 15, 80), (14, 15, 12), view_angle=25),
+            SIZE,
+            lit=True,
+            DecodeWholeVolume=not cached,
+        )
         light = vtkLight()
         light.SetLightTypeToSceneLight()
         light.SetPosition(50, 90, 70)
@@ -202,7 +242,11 @@ def test_light_at_the_border_of_a_hole(make, cached):
         depth = progiso.depth(scene.mapper)
     seen = np.isfinite(depth)
     plane = np.median(pictures[0][seen], axis=0)
-    assert 0.1 < seen.mean() < 0.9 * np.isfinite(Scene(images[0], 20.3, scene.camera, SIZE).depth()).mean() + 0.1
+    assert (
+        0.1
+        < seen.mean()
+        < 0.9 * np.isfinite(Scene(images[0], 20.3, scene.camera, SIZE).depth()).mean() + 0.1
+    )
     # at the volume's own border differences are one-sided, as in VTK's mapper, and of half the slope
     inside = seen & (np.abs(pictures[0] - plane).max(axis=2) <= 1)
     assert inside.mean() > 0.1
@@ -247,7 +291,9 @@ def test_all_of_it_hidden():
 def test_round_trip(shape, start, share, rate, cells, seed):
     """What was hidden is NaN and marked, hidden cells are marked, and the rest is as close as ever."""
     samples = speckles(shape, share, seed)
-    image = make_image(np.where(samples, np.nan, noise(shape, seed)), cells=cells, extent_start=start)
+    image = make_image(
+        np.where(samples, np.nan, noise(shape, seed)), cells=cells, extent_start=start
+    )
     others = None if cells else speckles(fewer(shape), share, seed + 1)
     volume = progiso.compress(blank(image, cells=others), rate, mask_nan=True)
     back = progiso.decompress(volume)
@@ -255,7 +301,11 @@ def test_round_trip(shape, start, share, rate, cells, seed):
     assert np.array_equal(np.isnan(values), samples)
     seen = ~samples
     assert same_bits(values[seen], reference_values(volume)[seen])
-    check_flags(back.GetCellData() if cells else back.GetPointData(), samples, HIDDEN_CELL if cells else HIDDEN_POINT)
+    check_flags(
+        back.GetCellData() if cells else back.GetPointData(),
+        samples,
+        HIDDEN_CELL if cells else HIDDEN_POINT,
+    )
     if not cells:
         check_flags(back.GetCellData(), others, HIDDEN_CELL)
     again = progiso.compress(back, rate)
@@ -317,7 +367,12 @@ def test_a_piece_takes_its_part_of_the_mask():
     inside = tuple(slice(extent[2 * axis], extent[2 * axis + 1] + 1) for axis in (2, 1, 0))
     part, whole = progiso.decompress(piece), progiso.decompress(volume)
     assert np.array_equal(values_of(part), values_of(whole)[inside], equal_nan=True)
-    flags = [vtk_to_numpy(i.GetCellData().GetArray("vtkGhostType")).reshape(np.array(i.GetDimensions()[::-1]) - 1) for i in (part, whole)]
+    flags = [
+        vtk_to_numpy(i.GetCellData().GetArray("vtkGhostType")).reshape(
+            np.array(i.GetDimensions()[::-1]) - 1
+        )
+        for i in (part, whole)
+    ]
     assert np.array_equal(flags[0], flags[1][tuple(slice(s.start, s.stop - 1) for s in inside)])
 
 
@@ -330,7 +385,11 @@ def test_files(tmp_path):
     writer.Write()
     reader.SetFileName(str(tmp_path / "hole.vti"))
     reader.Update()
-    assert np.array_equal(values_of(progiso.decompress(reader.GetOutput())), values_of(progiso.decompress(volume)), equal_nan=True)
+    assert np.array_equal(
+        values_of(progiso.decompress(reader.GetOutput())),
+        values_of(progiso.decompress(volume)),
+        equal_nan=True,
+    )
     with pytest.raises((RuntimeError, OSError), match="hidden"):
         progiso.save(volume, tmp_path / "hole.zfp")
     assert not (tmp_path / "hole.zfp").exists()
@@ -425,7 +484,9 @@ def test_a_plain_image_hides_no_nan_from_the_contour():
 def test_ghosts_in_pyvista():
     pyvista = pytest.importorskip("pyvista")
     grid = pyvista.wrap(make_image(blobs(SHAPE, 3)))
-    grid.point_data["vtkGhostType"] = np.where(ball(SHAPE, 12).ravel(), HIDDEN_POINT, 0).astype(np.uint8)
+    grid.point_data["vtkGhostType"] = np.where(ball(SHAPE, 12).ravel(), HIDDEN_POINT, 0).astype(
+        np.uint8
+    )
     plotter = pyvista.Plotter(off_screen=True, window_size=SIZE)
     prop = plotter.progiso.add_isosurface(grid, ISOVALUE, rate=12)
     plotter.screenshot()
@@ -447,5 +508,7 @@ def test_the_default_array_is_no_ghost_array(cells):
     assert data.GetArrayName(0) == "vtkGhostType" and data.GetScalars() is None
     assert progiso.describe(progiso.compress(image))["array"] == "field"
     depth = Scene(image, 0.0, Camera((4, 4, 30), (4, 4, 4)), SIZE).depth()
-    assert np.array_equal(depth, Scene(progiso.compress(image), 0.0, Camera((4, 4, 30), (4, 4, 4)), SIZE).depth())
+    assert np.array_equal(
+        depth, Scene(progiso.compress(image), 0.0, Camera((4, 4, 30), (4, 4, 4)), SIZE).depth()
+    )
     assert np.isfinite(depth).any()

@@ -5,7 +5,6 @@ import subprocess
 import sys
 
 import numpy as np
-import progiso
 import pytest
 from oracle import zfp_reference
 from oracle.caster import Camera
@@ -14,6 +13,8 @@ from support import PREFIX, blobs, make_image, metadata, noise, reference_values
 from test_decode import check, window  # noqa: F401 (a fixture)
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLookupTable
+
+import progiso
 
 SHAPE = (36, 40, 44)
 CAMERA = Camera((90.0, 70.0, 110.0), (21.5, 19.5, 17.5), view_angle=30.0)
@@ -64,9 +65,14 @@ def damaged(request):
     """A compressed volume with a damaged stream, and an isovalue in the middle of what libzfp decodes of it."""
     image = progiso.compress(make_image(blobs(SHAPE, 3)), 8)
     stream = vtk_to_numpy(image.GetFieldData().GetAbstractArray(PREFIX + "Stream"))
-    DAMAGE[request.param](stream, np.random.default_rng(5))  # in place: the array is the image's own
+    DAMAGE[request.param](
+        stream, np.random.default_rng(5)
+    )  # in place: the array is the image's own
     values = reference_values(image)
-    assert np.isinf(values).any() == (request.param in ("all ones", "random", "infinite")) and not np.isnan(values).any()
+    assert (
+        np.isinf(values).any() == (request.param in ("all ones", "random", "infinite"))
+        and not np.isnan(values).any()
+    )
     finite = values[np.isfinite(values)]
     return image, float(np.median(finite[np.abs(finite) > 0.05])) if (finite != 0).any() else 0.1
 
@@ -139,7 +145,9 @@ def test_infinite_values_hide_no_other_surface(sign):
     before = Scene(image, 0.1, camera, SIZE).depth()
     metadata(image, "Stream")[:256] = infinite_block(sign)
     after = Scene(image, 0.1, camera, SIZE).depth()
-    unaffected = before < np.linalg.norm(np.subtract(camera.position, (4, 4, 4)))  # nearer than that block
+    unaffected = before < np.linalg.norm(
+        np.subtract(camera.position, (4, 4, 4))
+    )  # nearer than that block
     assert unaffected.mean() > 0.1
     assert np.array_equal(before[unaffected], after[unaffected])
 
@@ -199,7 +207,10 @@ METADATA = {
     "version": (lambda image: replace(image, "Version", [9]), "version 9"),
     "rate negative": (lambda image: replace(image, "BlockBits", [-64]), "BlockBits is -64"),
     "rate of another stream": (lambda image: replace(image, "BlockBits", [2048]), "truncated"),
-    "truncated": (lambda image: replace(image, "Stream", metadata(image, "Stream")[:-8]), "truncated"),
+    "truncated": (
+        lambda image: replace(image, "Stream", metadata(image, "Stream")[:-8]),
+        "truncated",
+    ),
     "dimensions": (lambda image: replace(image, "Dimensions", [1 << 62, 9, 9]), "Dimensions"),
     "range NaN": (lambda image: replace(image, "Range", [NAN, 1.0]), "Range"),
     "range reversed": (lambda image: replace(image, "Range", [1.0, -1.0]), "Range"),
@@ -247,11 +258,25 @@ def test_origin_of_two_numbers(folder):
 
 def test_command_line(folder):
     """Exit status 1 and one line."""
-    for change, word in (METADATA["truncated"], METADATA["range reversed"], (GEOMETRIES["spacing zero"], "finite")):
+    for change, word in (
+        METADATA["truncated"],
+        METADATA["range reversed"],
+        (GEOMETRIES["spacing zero"], "finite"),
+    ):
         image = progiso.compress(make_image(noise((9, 9, 9))), 8)
         change(image)
         progiso.save(image, folder / "x.vti")
-        command = [sys.executable, "-m", "progiso", "render", "x.vti", "--isovalue", "1", "--size", "64x48"]
+        command = [
+            sys.executable,
+            "-m",
+            "progiso",
+            "render",
+            "x.vti",
+            "--isovalue",
+            "1",
+            "--size",
+            "64x48",
+        ]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
         lines = done.stderr.strip().splitlines()
         assert done.returncode == 1 and len(lines) == 1, done.stdout + done.stderr

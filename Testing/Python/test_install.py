@@ -19,7 +19,9 @@ def prefix(build, tmp_path_factory):  # noqa: F811
 
 
 def run(*command, **options):
-    done = subprocess.run([str(part) for part in command], capture_output=True, text=True, timeout=600, **options)
+    done = subprocess.run(
+        [str(part) for part in command], capture_output=True, text=True, timeout=600, **options
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
@@ -40,10 +42,21 @@ def test_nothing_points_back(prefix, build):  # noqa: F811
 
 def test_find_package(prefix, build, tmp_path):  # noqa: F811
     """The example program configures, builds and runs on the moved installation."""
-    settings = {name: cached(build, name) for name in ("ParaView_DIR", "VTK_DIR", "Python3_EXECUTABLE")}
+    settings = {
+        name: cached(build, name) for name in ("ParaView_DIR", "VTK_DIR", "Python3_EXECUTABLE")
+    }
     settings["ProgIso_DIR"] = prefix / "lib/cmake/ProgIso"
     source, made = HERE.parent / "Cxx/Example", tmp_path / "example"
-    run("cmake", "-S", source, "-B", made, "-G", "Ninja", *(f"-D{name}={value}" for name, value in settings.items()))
+    run(
+        "cmake",
+        "-S",
+        source,
+        "-B",
+        made,
+        "-G",
+        "Ninja",
+        *(f"-D{name}={value}" for name, value in settings.items()),
+    )
     run("cmake", "--build", made)
     under_x(made / "isosurface", tmp_path / "example.png")
     assert (tmp_path / "example.png").stat().st_size > 2000
@@ -59,4 +72,6 @@ def test_plugin_path(prefix, tmp_path):
         "assert ZFPCompress(Wavelet()) and ZFPContour\n"
         "print('found')\n"
     )
-    assert under_x("pvpython", script, PV_PLUGIN_PATH=str(prefix / PLUGINS)).strip().endswith("found")
+    assert (
+        under_x("pvpython", script, PV_PLUGIN_PATH=str(prefix / PLUGINS)).strip().endswith("found")
+    )

@@ -3,11 +3,20 @@
 import collections
 
 import numpy as np
-import progiso
 import pytest
 from oracle.caster import Camera
 from scenes import CACHED, Scene, least_budget, orbit
-from support import blobs, make_image, marschner_lobb, noise, reference_volume, stream_of, vtk_messages
+from support import (
+    blobs,
+    make_image,
+    marschner_lobb,
+    noise,
+    reference_volume,
+    stream_of,
+    vtk_messages,
+)
+
+import progiso
 
 # large enough that the smallest cache does not hold them
 FIELDS = {
@@ -39,9 +48,9 @@ def same(case, **settings):
     scene = Scene(image, isovalue, camera, lit=True, **settings)
     depth = scene.depth()
     different = np.argwhere(depth.view(np.uint32) != expected.view(np.uint32))
-    assert (
-        len(different) == 0
-    ), f"{len(different)} pixels, first {different[0]}: {depth[tuple(different[0])]}, not {expected[tuple(different[0])]}"
+    assert len(different) == 0, (
+        f"{len(different)} pixels, first {different[0]}: {depth[tuple(different[0])]}, not {expected[tuple(different[0])]}"
+    )
     assert scene.picture().tobytes() == picture.tobytes()
     return scene.statistics()
 
@@ -79,7 +88,9 @@ def test_never_over_budget(case):
     """Not after any pass, not while the view, the isovalue and the image's size change."""
     image, isovalue, camera, _, _ = case
     budget = 3 * least_budget(image, isovalue, camera)
-    scene = Scene(image, isovalue, camera, lit=True, MemoryBudget=budget, MaximumPassesPerRender=1, **CACHED)
+    scene = Scene(
+        image, isovalue, camera, lit=True, MemoryBudget=budget, MaximumPassesPerRender=1, **CACHED
+    )
     for size, change in (((160, 120), 0), ((200, 150), 0.1), ((40, 30), -0.1), ((170, 130), 0)):
         scene.window.SetSize(*size)
         scene.isovalue = isovalue + change
@@ -114,7 +125,9 @@ def test_stream_in_several_buffers(case, bits, whole):
     image = progiso.compress(progiso.decompress(image), bits / 64)
     expected = Scene(image, isovalue, camera).depth()
     stream = len(stream_of(image))
-    scene = Scene(image, isovalue, camera, LargestBuffer=max(stream // 3, 2_500_000 if whole else 600_000))
+    scene = Scene(
+        image, isovalue, camera, LargestBuffer=max(stream // 3, 2_500_000 if whole else 600_000)
+    )
     scene.mapper.SetDecodeWholeVolume(whole)
     assert scene.depth().tobytes() == expected.tobytes()
     if not whole and stream > 900_000:
@@ -132,7 +145,13 @@ def test_passes_per_render(case, passes, speculation):
 def test_everything_at_once(case, share):
     image, isovalue, camera, _, _ = case
     budget = int(share * least_budget(image, isovalue, camera))
-    same(case, MemoryBudget=budget, SpeculationLimit=7, MaximumPassesPerRender=1, DetailedStatistics=True)
+    same(
+        case,
+        MemoryBudget=budget,
+        SpeculationLimit=7,
+        MaximumPassesPerRender=1,
+        DetailedStatistics=True,
+    )
 
 
 def test_history_does_not_show(case):
@@ -152,7 +171,9 @@ def test_history_does_not_show(case):
 
 def test_a_change_amid_the_passes_restarts(case):
     image, isovalue, camera, expected, _ = case
-    scene = Scene(image, isovalue + 0.1, camera, MaximumPassesPerRender=1, SpeculationLimit=1, **CACHED)
+    scene = Scene(
+        image, isovalue + 0.1, camera, MaximumPassesPerRender=1, SpeculationLimit=1, **CACHED
+    )
     scene.renderer.ResetCameraClippingRange()
     scene.window.Render()
     assert not scene.mapper.GetConverged()

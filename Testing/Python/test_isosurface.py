@@ -1,11 +1,12 @@
 """`make_isosurface` and `render`: several isovalues with their colours and opacities, and what is wrong with others."""
 
 import numpy as np
-import progiso
 import pytest
-from progiso.render import window_pixels
 from support import make_image
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction, vtkRenderer, vtkRenderWindow
+
+import progiso
+from progiso.render import window_pixels
 
 SIZE = 101
 RED, GREEN, BLUE = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
@@ -88,9 +89,17 @@ def test_a_transfer_function_gives_the_colours(image):
 
 WRONG = {
     "no isovalue": ({"isovalue": []}, ValueError, "isovalue: give 1 to 16"),
-    "too many isovalues": ({"isovalue": range(17)}, ValueError, "isovalue: give 1 to 16 isovalues, not 17"),
+    "too many isovalues": (
+        {"isovalue": range(17)},
+        ValueError,
+        "isovalue: give 1 to 16 isovalues, not 17",
+    ),
     "isovalue's kind": ({"isovalue": "6"}, ValueError, "isovalue must be a finite number, got '6'"),
-    "not finite": ({"isovalue": [6, float("nan")]}, ValueError, "isovalue must be a finite number, got nan"),
+    "not finite": (
+        {"isovalue": [6, float("nan")]},
+        ValueError,
+        "isovalue must be a finite number, got nan",
+    ),
     "colours": ({"color": [RED] * 3}, ValueError, "color: 3 for 2 isovalues; give 1 or 2"),
     "colour's length": ({"color": (1, 0)}, ValueError, "color must be red, green and blue"),
     "colour's kind": ({"color": 5}, TypeError, "color must be red, green and blue"),
@@ -121,7 +130,15 @@ def test_render(image):
     """As the command line has it: colours by name, one or one for each isovalue."""
     camera = progiso.view_camera(image, (1, 0, 0), (0, 0, 1))
     one, both = (
-        progiso.render(image, isovalues, (64, 64), camera=camera, color=color, background="black", opacity=opacity)
+        progiso.render(
+            image,
+            isovalues,
+            (64, 64),
+            camera=camera,
+            color=color,
+            background="black",
+            opacity=opacity,
+        )
         for isovalues, color, opacity in ((6, "lime", 1), ([12, 6], ["red", "#00ff00"], [0.5, 1]))
     )
     alone, through, outside = one.image[32, 32], both.image[32, 32], both.image[32, 32 + 15]

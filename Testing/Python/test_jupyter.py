@@ -86,9 +86,15 @@ class Notebook:
     async def run(self, source):
         """Run a cell; return what it printed."""
         self._notebook.cells.append(self._new_cell(source))
-        cell = await self._client.async_execute_cell(self._notebook.cells[-1], len(self._notebook.cells) - 1)
+        cell = await self._client.async_execute_cell(
+            self._notebook.cells[-1], len(self._notebook.cells) - 1
+        )
         self.outputs = cell.outputs
-        return "".join(output.text for output in cell.outputs if output.output_type == "stream" and output.name == "stdout")
+        return "".join(
+            output.text
+            for output in cell.outputs
+            if output.output_type == "stream" and output.name == "stdout"
+        )
 
     def page(self):
         """Return the address of the page in the widget that the last cell displayed."""

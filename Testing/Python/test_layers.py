@@ -1,7 +1,6 @@
 """Several and translucent isosurfaces against the double-precision caster; how the work is divided shows in no bit of them."""
 
 import numpy as np
-import progiso
 import pytest
 import tolerances
 from layers import blend, crossings_of
@@ -11,12 +10,23 @@ from stages import BACKGROUND, SIZE, Stage
 from support import blobs, make_image, noise, reference_volume, vtk_messages
 from test_conformance import CENTRE, NESTED, PLANES, REGIONS, ball, show
 
+import progiso
+
 FIELDS = {
     "blobs": (lambda: blobs((24, 32, 28), 12, waves=2), NESTED),
-    "thin": (lambda: blobs((40, 44, 36), 3, waves=8), {v: (*rgb, 0.2) for v, rgb in zip((-0.3, 0, 0.3), np.eye(3))}),
+    "thin": (
+        lambda: blobs((40, 44, 36), 3, waves=8),
+        {v: (*rgb, 0.2) for v, rgb in zip((-0.3, 0, 0.3), np.eye(3))},
+    ),
     "noise": (lambda: noise((12, 14, 16)), {-0.5: (1, 0, 0, 0.3), 0.5: (0, 0.5, 1, 0.6)}),
-    "opaque among them": (lambda: blobs((24, 32, 28), 12, waves=2), {**NESTED, 0.3: (1, 1, 0, 1.0)}),
-    "all opaque": (lambda: blobs((24, 32, 28), 12, waves=2), {v: (*rgb[:3], 1.0) for v, rgb in NESTED.items()}),
+    "opaque among them": (
+        lambda: blobs((24, 32, 28), 12, waves=2),
+        {**NESTED, 0.3: (1, 1, 0, 1.0)},
+    ),
+    "all opaque": (
+        lambda: blobs((24, 32, 28), 12, waves=2),
+        {v: (*rgb[:3], 1.0) for v, rgb in NESTED.items()},
+    ),
 }
 
 
@@ -29,7 +39,12 @@ def field(request):
 def expected(stage, image, surfaces, end=np.inf, background=BACKGROUND, cropping=None):
     """What the caster makes of a stage's scene, unlit."""
     crossings = crossings_of(
-        reference_volume(image), list(surfaces), Camera.from_vtk(stage.camera), SIZE, stage.camera.GetClippingRange(), cropping
+        reference_volume(image),
+        list(surfaces),
+        Camera.from_vtk(stage.camera),
+        SIZE,
+        stage.camera.GetClippingRange(),
+        cropping,
     )
     return crossings, blend(crossings, list(surfaces.values()), background, SIZE, end)
 
@@ -91,7 +106,9 @@ def test_layers_end_at_opaque_geometry(field):
     # a sphere of triangles lies a little within the sphere: what is near its edge or just before it does not count
     edge = np.abs(miss - 8) < 0.15
     near = np.zeros(len(miss), bool)
-    close = (crossings.depth > end[crossings.ray] - 0.05) & (crossings.depth < end[crossings.ray] + 0.25)
+    close = (crossings.depth > end[crossings.ray] - 0.05) & (
+        crossings.depth < end[crossings.ray] + 0.25
+    )
     near[crossings.ray[close]] = True
     counts = ~(edge | near).reshape(SIZE[1], SIZE[0])
     assert counts.mean() > 0.8 and (miss < 8)[counts.ravel()].sum() > 500
@@ -142,7 +159,9 @@ def test_division_of_the_work(whole, name):
     settings = dict(DIVISIONS[name])
     if "MemoryBudget" in settings:
         least = least_budget(image, NESTED, lit)
-        settings["MemoryBudget"] = least if settings["MemoryBudget"] == "least" else int(1.05 * least)
+        settings["MemoryBudget"] = (
+            least if settings["MemoryBudget"] == "least" else int(1.05 * least)
+        )
     stage = Stage(True)
     show(stage, image, NESTED, **settings, **CACHED).GetProperty().SetShade(lit)
     stage.renderer.AddActor(ball(20, centre=image.GetCenter()))
@@ -162,7 +181,9 @@ def test_a_partial_picture_has_no_more_than_the_complete_one(whole):
     """Layers come in from the front: a picture on its way is nowhere nearer to nothing than one before it."""
     image, lit, picture, _ = whole
     stage = Stage(True)
-    show(stage, image, NESTED, MaximumPassesPerRender=1, SpeculationLimit=1, **CACHED).GetProperty().SetShade(lit)
+    show(
+        stage, image, NESTED, MaximumPassesPerRender=1, SpeculationLimit=1, **CACHED
+    ).GetProperty().SetShade(lit)
     stage.renderer.AddActor(ball(20, centre=image.GetCenter()))
     stage.renderer.ResetCameraClippingRange()
     fractions = []

@@ -3,7 +3,6 @@
 import ctypes
 
 import numpy as np
-import progiso
 import pytest
 from scenes import CACHED
 from stages import Stage, paint, picture_of
@@ -12,6 +11,8 @@ from test_conformance import GREEN, NESTED, OPAQUE, RED, TURNED, ball, planes, s
 from vtkmodules.vtkCommonDataModel import vtkPlane
 from vtkmodules.vtkRenderingCore import vtkLight, vtkRenderWindow, vtkVolume
 
+import progiso
+
 
 @pytest.fixture(scope="module")
 def image():
@@ -19,13 +20,17 @@ def image():
 
 
 def decoded(stage):
-    return sum(row["decoded_blocks"] for row in progiso.statistics(stage.mapper, stage.renderer)["passes"])
+    return sum(
+        row["decoded_blocks"] for row in progiso.statistics(stage.mapper, stage.renderer)["passes"]
+    )
 
 
 # --- decoded blocks ----------------------------------------------------------------------------------------------------------
 
 LOOKS = {
-    "colour": lambda stage: paint(stage.volumes[0], {value: (*RED, look[3]) for value, look in stage.surfaces.items()}),
+    "colour": lambda stage: paint(
+        stage.volumes[0], {value: (*RED, look[3]) for value, look in stage.surfaces.items()}
+    ),
     "light": lambda stage: stage.shine((1, 0, 0)),
     "shading": lambda stage: stage.volumes[0].GetProperty().SetAmbient(0.7),
     "obstacle": lambda stage: stage.renderer.AddActor(ball(24, centre=(26, 28, 24))),
@@ -33,7 +38,9 @@ LOOKS = {
 VIEWS = {
     "smaller window": lambda stage: stage.window.SetSize(100, 80),
     "nearer": lambda stage: stage.camera.Zoom(1.2),
-    "opacity": lambda stage: paint(stage.volumes[0], {v: (*look[:3], 0.4) for v, look in stage.surfaces.items()}),
+    "opacity": lambda stage: paint(
+        stage.volumes[0], {v: (*look[:3], 0.4) for v, look in stage.surfaces.items()}
+    ),
     "clipping": lambda stage: stage.mapper.AddClippingPlane(next(planes((1, 0, 0)))),
     "cropping": lambda stage: stage.mapper.SetCropping(True),
 }
@@ -86,7 +93,16 @@ def test_a_new_isovalue_decodes_only_what_it_adds(image):
 
 # --- OpenGL's objects --------------------------------------------------------------------------------------------------------
 
-KINDS = ["Buffer", "Texture", "Program", "Shader", "Query", "Framebuffer", "Renderbuffer", "VertexArray"]
+KINDS = [
+    "Buffer",
+    "Texture",
+    "Program",
+    "Shader",
+    "Query",
+    "Framebuffer",
+    "Renderbuffer",
+    "VertexArray",
+]
 
 
 def objects(window):
@@ -102,7 +118,9 @@ def objects(window):
     return counts
 
 
-@pytest.mark.parametrize("settings", [{}, {**CACHED, "DetailedStatistics": True}, {**CACHED, "SpeculationLimit": 1}])
+@pytest.mark.parametrize(
+    "settings", [{}, {**CACHED, "DetailedStatistics": True}, {**CACHED, "SpeculationLimit": 1}]
+)
 def test_nothing_is_left_behind(image, settings):
     """Mappers come and go, fifty of them: OpenGL has as many objects as after the first."""
     stage = Stage(True)
@@ -212,7 +230,15 @@ def test_everything_prints(image):
     volume = show(stage, image, NESTED)
     stage.mapper.SetMemoryBudget(123456789)
     text = str(stage.mapper)
-    for name in ("Rate", "Component", "SpeculationLimit", "MemoryBudget", "DecodeWholeVolume", "LargestBuffer", "TimeAllowance"):
+    for name in (
+        "Rate",
+        "Component",
+        "SpeculationLimit",
+        "MemoryBudget",
+        "DecodeWholeVolume",
+        "LargestBuffer",
+        "TimeAllowance",
+    ):
         assert name in text
     assert "123456789" in text and "vtkIsosurfaceVolume" in str(volume)
 

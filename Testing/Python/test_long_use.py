@@ -5,7 +5,6 @@ import sys
 import threading
 
 import numpy as np
-import progiso
 import pytest
 import tolerances
 from progiso.benchmarks.machine import resident_bytes
@@ -17,6 +16,8 @@ from test_conformance import BLUE, GREEN, NESTED, OPAQUE, RED, show
 from test_lifecycle import objects
 from test_paraview import under_x
 from vtkmodules.vtkRenderingCore import vtkRenderWindow
+
+import progiso
 
 MAPPERS, VOLUMES, FRAMES = 200, 50, 12
 
@@ -36,7 +37,12 @@ def test_mappers_come_and_go(image):
     stage.render()
     stage.volumes.clear()
     keeper.VisibilityOff()
-    kinds = [(OPAQUE, {}), (NESTED, CACHED), (OPAQUE, {**CACHED, "DetailedStatistics": True}), (NESTED, {})]
+    kinds = [
+        (OPAQUE, {}),
+        (NESTED, CACHED),
+        (OPAQUE, {**CACHED, "DetailedStatistics": True}),
+        (NESTED, {}),
+    ]
     samples = {"frame": [], "rss": []}
     for number in range(MAPPERS):
         surfaces, settings = kinds[number % len(kinds)]
@@ -51,7 +57,9 @@ def test_mappers_come_and_go(image):
             samples["frame"].append(number)
             samples["rss"].append(resident_bytes())
             if number < MAPPERS / 4:
-                counted = objects(stage.window)  # by then all shaders are compiled, which the keeper holds
+                counted = objects(
+                    stage.window
+                )  # by then all shaders are compiled, which the keeper holds
     assert objects(stage.window) == counted
     assert growth(samples, "rss", MAPPERS // 4) <= tolerances.GROWTH_BYTES
     stage.renderer.RemoveVolume(keeper)
@@ -87,7 +95,9 @@ def test_fifty_volumes(image):
     assert all_["Buffer"] - first["Buffer"] <= (VOLUMES - 1) * first["Buffer"]
     background = picture[0, 0]
     together = np.broadcast_to(background, picture.shape).copy()
-    for matrix, color in zip(matrices, colors):  # they do not overlap: what one shows the others leave alone
+    for matrix, color in zip(
+        matrices, colors
+    ):  # they do not overlap: what one shows the others leave alone
         volume = alone.add(small, {0.1: (*color, 1.0)}, matrix)
         one = alone.picture()
         shown = (one != background).any(axis=2)
@@ -98,7 +108,12 @@ def test_fifty_volumes(image):
     assert np.array_equal(picture, together)
 
 
-SCENES = [(OPAQUE, {}), (NESTED, CACHED), ({0.2: (*RED, 1.0)}, CACHED), ({-0.2: (*BLUE, 0.5), 0.3: (*GREEN, 1.0)}, {})]
+SCENES = [
+    (OPAQUE, {}),
+    (NESTED, CACHED),
+    ({0.2: (*RED, 1.0)}, CACHED),
+    ({-0.2: (*BLUE, 0.5), 0.3: (*GREEN, 1.0)}, {}),
+]
 
 
 def frames(image, surfaces, settings):

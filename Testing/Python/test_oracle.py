@@ -57,7 +57,9 @@ def test_hidden_cells(case):
     hidden[:, :, list(columns)] = True
     values[:, :, [i for i in range(1, 9) if hidden[0, 0, i - 1] and hidden[0, 0, i]]] = np.nan
     origins = np.array([[-3.0, 2.2, 1.7], [4.2, 2.2, 1.7], [8.5, 2.2, 1.7]])
-    found = cast_rays(Volume(values, np.eye(4), hidden), 0.0, origins, np.eye(3)[[0, 0, 0]], tolerances.SLACK)
+    found = cast_rays(
+        Volume(values, np.eye(4), hidden), 0.0, origins, np.eye(3)[[0, 0, 0]], tolerances.SLACK
+    )
     assert found.depth + origins[:, 0] == pytest.approx(depths, abs=tolerances.ORACLE_EXACT)
     assert (found.early <= found.depth).all() and (found.depth <= found.late).all()
     assert found.late + origins[:, 0] == pytest.approx(depths, abs=tolerances.CLEAR_VOXELS)
@@ -67,8 +69,12 @@ def test_hidden_everything_or_nothing():
     values = np.random.default_rng(5).normal(size=(6, 7, 8))
     origins, directions = random_rays(np.random.default_rng(6), values.shape, 300)
     whole = cast_rays(plain(values), 0.1, origins, directions).depth
-    nothing, everything = (Volume(values, np.eye(4), np.full((5, 6, 7), hidden)) for hidden in (False, True))
-    assert np.isfinite(whole).any() and np.array_equal(cast_rays(nothing, 0.1, origins, directions).depth, whole)
+    nothing, everything = (
+        Volume(values, np.eye(4), np.full((5, 6, 7), hidden)) for hidden in (False, True)
+    )
+    assert np.isfinite(whole).any() and np.array_equal(
+        cast_rays(nothing, 0.1, origins, directions).depth, whole
+    )
     assert not np.isfinite(cast_rays(everything, 0.1, origins, directions).depth).any()
 
 
@@ -96,7 +102,10 @@ def test_first_root_by_dense_sampling(seed):
         if np.isfinite(depth):
             at = origin + depth * direction
             assert abs(sample(values, at) - isovalue) < 1e-9
-            around = sample(values, origin + np.outer([depth - 1e-7, depth + 1e-7], direction)) >= isovalue
+            around = (
+                sample(values, origin + np.outer([depth - 1e-7, depth + 1e-7], direction))
+                >= isovalue
+            )
             assert around[0] != around[1]
 
 
@@ -124,7 +133,10 @@ def test_sphere():
     n, radius = 65, 20.0
     centre = (n - 1) / 2
     values = np.linalg.norm(np.stack(np.indices((n, n, n))) - centre, axis=0)
-    for position in ((centre + 90, centre + 3, centre - 5), (centre + 1.0, centre - 4.0, centre + 2.5)):
+    for position in (
+        (centre + 90, centre + 3, centre - 5),
+        (centre + 1.0, centre - 4.0, centre + 2.5),
+    ):
         camera = Camera(position, (centre, centre, centre), view_angle=40)
         result = cast(plain(values), radius, camera, (64, 48))
         origins, directions = camera.rays((64, 48))
@@ -147,7 +159,9 @@ def test_both_roots_within_one_cell():
     direction = np.array([[1, -1, 0]]) / np.sqrt(2)
     origin = np.array([[-1, 2, 0.5]])
     root = (0.5 - np.sqrt(0.25 - 0.24) + 1) * np.sqrt(2)
-    assert cast_rays(plain(values), 0.24, origin, direction).depth[0] == pytest.approx(root, abs=1e-12)
+    assert cast_rays(plain(values), 0.24, origin, direction).depth[0] == pytest.approx(
+        root, abs=1e-12
+    )
     assert cast_rays(plain(values), 0.26, origin, direction).depth[0] == np.inf
 
 
@@ -155,8 +169,12 @@ def test_equal_to_the_isovalue_is_inside():
     """A plateau at the isovalue is entered at its edge and not left before it falls."""
     values = np.broadcast_to(np.array([0.0, 1, 1, 1, 0]), (2, 2, 5))
     origin, direction = np.array([[-1, 0.5, 0.5]]), np.array([[1.0, 0, 0]])
-    assert cast_rays(plain(values), 1.0, origin, direction).depth[0] == pytest.approx(2.0, abs=1e-12)
-    assert cast_rays(plain(values), 1.0, origin + [2.5, 0, 0], direction).depth[0] == pytest.approx(1.5, abs=1e-12)
+    assert cast_rays(plain(values), 1.0, origin, direction).depth[0] == pytest.approx(
+        2.0, abs=1e-12
+    )
+    assert cast_rays(plain(values), 1.0, origin + [2.5, 0, 0], direction).depth[0] == pytest.approx(
+        1.5, abs=1e-12
+    )
     assert cast_rays(plain(values[:, :, 1:4]), 1.0, origin, direction).depth[0] == np.inf
 
 
@@ -185,7 +203,9 @@ def test_geometry_moves_with_the_camera():
     for parallel in (None, 6.0):
         position, focal, up = np.array([20.0, 12, 17]), np.array([4.0, 2, 5]), np.array([0.1, 1, 0])
         before = cast(start, 0.2, Camera(position, focal, up, 40, parallel), (40, 30))
-        moved = Camera(rotation @ position + shift, rotation @ focal + shift, rotation @ up, 40, parallel)
+        moved = Camera(
+            rotation @ position + shift, rotation @ focal + shift, rotation @ up, 40, parallel
+        )
         after = cast(place, 0.2, moved, (40, 30))
         hit = np.isfinite(before.depth)
         assert hit.sum() > 100
@@ -243,7 +263,9 @@ def test_geometry_is_vtks():
     image.SetSpacing(0.5, 2, 0.25)
     rotation = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))[0]
     image.SetDirectionMatrix(rotation.ravel())
-    volume = Volume.from_geometry(np.zeros((6, 7, 5)), image.GetOrigin(), image.GetSpacing(), rotation, (3, -2, 10))
+    volume = Volume.from_geometry(
+        np.zeros((6, 7, 5)), image.GetOrigin(), image.GetSpacing(), rotation, (3, -2, 10)
+    )
     for index in ((3, -2, 10), (7, 4, 15), (4, 0, 12)):
         expected = np.zeros(3)
         image.TransformIndexToPhysicalPoint(index, expected)

@@ -12,13 +12,26 @@ from test_paraview import HERE, WARNINGS, build, under_x  # noqa: F401 (build is
 pytestmark = pytest.mark.paraview
 
 CASES = ["plain", "compressed", "decompressed", "cells", "cells-compressed"]
-CASES += ["file-compressed", "file-plain", "file-zfp", "pieces", "several", "translucent", "contour"]
+CASES += [
+    "file-compressed",
+    "file-plain",
+    "file-zfp",
+    "pieces",
+    "several",
+    "translucent",
+    "contour",
+]
 CASES += ["among-meshes", "translucent-among-meshes"]
 
 #: Open MPI in a container; processes that share few cores should each take one.
 MPI = {
     name: "1"
-    for name in ("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "OMP_NUM_THREADS", "LP_NUM_THREADS")
+    for name in (
+        "OMPI_ALLOW_RUN_AS_ROOT",
+        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM",
+        "OMP_NUM_THREADS",
+        "LP_NUM_THREADS",
+    )
 }
 
 
@@ -40,14 +53,19 @@ def shown(build, tmp_path_factory):  # noqa: F811
     found, areas = {}, []
     for processes in (1, 2, 4):
         output = mpiexec(
-            processes, "pvbatch", HERE / "paraview_scripts" / "parallel.py", build, folder / str(processes)
+            processes,
+            "pvbatch",
+            HERE / "paraview_scripts" / "parallel.py",
+            build,
+            folder / str(processes),
         )
         assert not any(word in output for word in WARNINGS), output[-6000:]
         (report,) = [json.loads(line) for line in output.splitlines() if line.startswith("{")]
         assert report["processes"] == processes
         areas.append(report["area"])
         found[processes] = {
-            case: pictures.read_png(folder / str(processes) / f"{case}.png").astype(int) for case in CASES
+            case: pictures.read_png(folder / str(processes) / f"{case}.png").astype(int)
+            for case in CASES
         }
     assert np.allclose(areas, areas[0], rtol=tolerances.PROCESSES_AREA, atol=0), areas
     return found

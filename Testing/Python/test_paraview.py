@@ -58,7 +58,12 @@ def under_x(*command, python_path=(), timeout=600, cwd=None, **variables):
     # -noreset: the server must not restart, and refuse a connection meanwhile, when its only client closes one to open the next
     display = ["xvfb-run", "-n", str(next(displays)), "-s", "-screen 0 1280x1024x24 -noreset"]
     done = subprocess.run(
-        [*display, *map(str, command)], env=environment, capture_output=True, text=True, timeout=timeout, cwd=cwd
+        [*display, *map(str, command)],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=timeout,
+        cwd=cwd,
     )
     output = done.stdout + done.stderr
     assert done.returncode == 0, output[-6000:]
@@ -73,7 +78,9 @@ def shown(request, build, plugin, packages, tmp_path_factory):
     folder = tmp_path_factory.mktemp(request.param)
     progiso.save(progiso.compress(make_image(marschner_lobb(64)), 8), folder / "volume.vti")
     script = HERE / "paraview_scripts" / "show.py"
-    output = under_x(request.param, script, plugin, folder / "volume.vti", folder, python_path=[packages])
+    output = under_x(
+        request.param, script, plugin, folder / "volume.vti", folder, python_path=[packages]
+    )
     assert "done" in output and not any(word in output for word in WARNINGS), output[-6000:]
     return folder
 
@@ -92,11 +99,15 @@ def test_facts(shown):
         assert values["NumberOfPasses"] > 0 and values["TotalMilliseconds"] > 0, name
         assert values["GPUBytes"] > values["CompressedBytes"] >= 0, name
     # what fits is decoded as a whole, and then not there compressed
-    whole, budget, plain = (facts[f"paraview-{name}"] for name in ("whole", "budget", "no-speculation"))
+    whole, budget, plain = (
+        facts[f"paraview-{name}"] for name in ("whole", "budget", "no-speculation")
+    )
     assert whole["NumberOfPasses"] == 1 and whole["CompressedBytes"] == 0
     assert plain["NumberOfPasses"] > budget["NumberOfPasses"] > 1
     for values in (budget, plain):
-        assert values["CompressedBytes"] == pytest.approx(26**3 * 64, abs=64)  # blocks, at 8 bits a voxel
+        assert values["CompressedBytes"] == pytest.approx(
+            26**3 * 64, abs=64
+        )  # blocks, at 8 bits a voxel
         assert values["GPUBytes"] - values["CompressedBytes"] <= 5 * 2**20 < whole["GPUBytes"]
 
 
@@ -115,7 +126,11 @@ CORE = {
     "contour": ["test_contour.py", "-k", "not mri-brain"],
     "files": ["test_compress_file.py", "-k", "not nii and not memory"],
     "decoder": ["test_decode.py", "-k", "all_rates or extreme or random_streams"],
-    "depth": ["test_depth.py", "-k", "white_noise or geometry or user_matrix or camera_inside or ct-cranium"],
+    "depth": [
+        "test_depth.py",
+        "-k",
+        "white_noise or geometry or user_matrix or camera_inside or ct-cranium",
+    ],
     "invariance": ["test_invariance.py", "test_statistics.py", "test_progressive.py"],
     "scenes": ["test_scene.py", "test_pyvista.py"],
 }
@@ -124,7 +139,21 @@ CORE = {
 @pytest.mark.parametrize("part", CORE)
 def test_core_on_paraviews_vtk(part, tmp_path, build):
     python = os.environ.get("PROGISO_PARAVIEW_PYTHON")
-    assert python, "PROGISO_PARAVIEW_PYTHON does not name a Python with pytest, pyvista and the package of the build"
+    assert python, (
+        "PROGISO_PARAVIEW_PYTHON does not name a Python with pytest, pyvista and the package of the build"
+    )
     arguments = [str(HERE / a) if a.endswith(".py") else a for a in CORE[part]]
-    output = under_x(python, "-m", "pytest", "-q", "-p", "no:cacheprovider", *arguments, cwd=tmp_path, timeout=900)
-    assert " passed" in output and "failed" not in output and "skipped" not in output, output[-3000:]
+    output = under_x(
+        python,
+        "-m",
+        "pytest",
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        *arguments,
+        cwd=tmp_path,
+        timeout=900,
+    )
+    assert " passed" in output and "failed" not in output and "skipped" not in output, output[
+        -3000:
+    ]

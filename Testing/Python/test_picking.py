@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-import progiso
 import pytest
 from layers import crossings_of, to_index
 from oracle.caster import Camera
@@ -21,21 +20,29 @@ from vtkmodules.vtkRenderingCore import (
 )
 from vtkmodules.vtkRenderingVolume import vtkVolumePicker
 
+import progiso
+
 PIXELS = [(x, y) for x in range(3, SIZE[0], 13) for y in range(2, SIZE[1], 11)]
 
 
 @pytest.fixture(scope="module")
 def image():
-    return progiso.compress(make_image(blobs(SHAPE, 12, waves=2), origin=(3, -4, 5), extent_start=(2, -7, 4)), 16)
+    return progiso.compress(
+        make_image(blobs(SHAPE, 12, waves=2), origin=(3, -4, 5), extent_start=(2, -7, 4)), 16
+    )
 
 
 def first_crossings(stage, image, surfaces, matrix=None):
     """Return by the caster, for each pixel from the bottom left, the place and isovalue of the first crossing."""
     camera, volume = Camera.from_vtk(stage.camera), reference_volume(image, matrix)
-    crossings = crossings_of(volume, sorted(surfaces), camera, SIZE, stage.camera.GetClippingRange())
+    crossings = crossings_of(
+        volume, sorted(surfaces), camera, SIZE, stage.camera.GetClippingRange()
+    )
     origins, directions = camera.rays(SIZE)
     found = {}
-    for ray, depth, surface in zip(crossings.ray[::-1], crossings.depth[::-1], crossings.surface[::-1]):
+    for ray, depth, surface in zip(
+        crossings.ray[::-1], crossings.depth[::-1], crossings.surface[::-1]
+    ):
         pixel = ray % SIZE[0], SIZE[1] - 1 - ray // SIZE[0]
         found[pixel] = origins[ray] + depth * directions[ray], sorted(surfaces)[surface]
     return found
@@ -106,12 +113,18 @@ def two_volumes(image):
 def test_the_nearest_volume_is_picked(image):
     """Of two that overlap; of those alone that are pickable, visible, or in the list."""
     stage = two_volumes(image)
-    depths = [np.nan_to_num(progiso.depth(volume.GetMapper()), posinf=1e9)[::-1] for volume in stage.volumes]
+    depths = [
+        np.nan_to_num(progiso.depth(volume.GetMapper()), posinf=1e9)[::-1]
+        for volume in stage.volumes
+    ]
     picker, seen = progiso.vtkIsosurfacePicker(), set()
     for x, y in PIXELS:
         pair = [depth[y, x] for depth in depths]
         if abs(pair[0] - pair[1]) > 1e-2:
-            assert picker.Pick(x, y, 0, stage.renderer) and picker.GetVolume() is stage.volumes[int(np.argmin(pair))]
+            assert (
+                picker.Pick(x, y, 0, stage.renderer)
+                and picker.GetVolume() is stage.volumes[int(np.argmin(pair))]
+            )
             seen.add(int(np.argmin(pair)))
     assert seen == {0, 1}
     x, y = next((x, y) for x, y in PIXELS if depths[0][y, x] + 1e-2 < depths[1][y, x] < 1e9)
@@ -156,7 +169,9 @@ def test_what_is_cut_away_is_not_picked(image, surfaces):
     whole = stage.picture() is not None and first_crossings(stage, image, surfaces)
     mapper.CroppingOn()
     bounds = image.GetBounds()
-    mapper.SetCroppingRegionPlanes(bounds[0] + 9, bounds[1] + 1, bounds[2] - 1, bounds[3] + 1, bounds[4] - 1, bounds[5] + 1)
+    mapper.SetCroppingRegionPlanes(
+        bounds[0] + 9, bounds[1] + 1, bounds[2] - 1, bounds[3] + 1, bounds[4] - 1, bounds[5] + 1
+    )
     mapper.SetCroppingRegionFlagsToSubVolume()
     plane = vtkPlane()
     plane.SetOrigin(image.GetCenter())
@@ -202,7 +217,9 @@ def select(stage, association, area):
     for i in range(selection.GetNumberOfNodes()):
         node = selection.GetNode(i)
         ids = node.GetSelectionList()
-        found[node.GetProperties().Get(vtkSelectionNode.PROP())] = {int(ids.GetValue(j)) for j in range(ids.GetNumberOfTuples())}
+        found[node.GetProperties().Get(vtkSelectionNode.PROP())] = {
+            int(ids.GetValue(j)) for j in range(ids.GetNumberOfTuples())
+        }
     return found
 
 
@@ -222,9 +239,13 @@ def test_the_selector_finds_cells(image, surfaces, matrix):
         assert set(found) == ({stage.volumes[0]} if (x, y) in expected else set())
         if found:
             place = to_index(volume, expected[x, y][0][None])[0]
-            if np.abs(place - np.round(place)).min() > 1e-3:  # else it may as well lie in the next cell
+            if (
+                np.abs(place - np.round(place)).min() > 1e-3
+            ):  # else it may as well lie in the next cell
                 cell = place.astype(int)
-                assert found[stage.volumes[0]] == {int(cell[0] + cells[0] * (cell[1] + cells[1] * cell[2]))}
+                assert found[stage.volumes[0]] == {
+                    int(cell[0] + cells[0] * (cell[1] + cells[1] * cell[2]))
+                }
                 hits += 1
     assert hits > 10
 

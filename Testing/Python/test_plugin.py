@@ -63,7 +63,11 @@ def test_window(build, tmp_path):  # noqa: F811
         assert abs(image["bar"] - image["completed"]) < 2e-3 and (image["text"] == "100 %") == (
             image["completed"] == 1.0
         )
-        assert image["rows"] == image["passes"] > 0 and image["image"].startswith(f"{image['passes']:.0f} pass")
-        assert image["memory"] == f"{image['held'] / 2**20:.1f} of {image['budget'] / 2**20:.1f} MiB"
+        assert image["rows"] == image["passes"] > 0 and image["image"].startswith(
+            f"{image['passes']:.0f} pass"
+        )
+        assert (
+            image["memory"] == f"{image['held'] / 2**20:.1f} of {image['budget'] / 2**20:.1f} MiB"
+        )
         assert 0 < image["held"] <= image["budget"] and all(time >= 0 for time in image["times"])
     assert seen[-1]["rows"] > seen[0]["rows"] and sum(seen[-1]["times"]) > 0

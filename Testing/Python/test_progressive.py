@@ -1,11 +1,12 @@
 """The image appears pass by pass in a window that someone watches, and complete everywhere else."""
 
 import numpy as np
-import progiso
 import pytest
 from scenes import CACHED, Scene, orbit
 from support import blobs, make_image, reference_volume
 from vtkmodules.vtkRenderingUI import vtkGenericRenderWindowInteractor
+
+import progiso
 
 
 class Watched(Scene):

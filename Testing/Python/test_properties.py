@@ -10,7 +10,6 @@ import subprocess
 import sys
 
 import numpy as np
-import progiso
 import pytest
 import tolerances
 from hypothesis import given
@@ -19,6 +18,8 @@ from oracle.caster import Camera, Volume, cast
 from progiso.verification import cracks
 from scenes import CACHED, Scene, check_depth, least_budget
 from support import blobs, make_image, noise, reference_values, values_of
+
+import progiso
 
 SIZE = (96, 64)
 
@@ -41,7 +42,11 @@ SEEDS = st.integers(0, 10**6)
 
 def random_field(kind, shape, seed):
     """Samples [z, y, x] that rate 32 keeps without loss: multiples of 2^-10."""
-    values = noise(shape, seed) if kind == "noise" else blobs(shape, seed, waves=2 if kind == "smooth" else 5)
+    values = (
+        noise(shape, seed)
+        if kind == "noise"
+        else blobs(shape, seed, waves=2 if kind == "smooth" else 5)
+    )
     return (np.round(values * 2**10) / 2**10).astype(np.float32)
 
 
@@ -50,7 +55,11 @@ def random_camera(shape, seed):
     rng = np.random.default_rng(seed)
     size = np.array(shape[::-1]) - 1.0
     target = rng.uniform(0.2, 0.8, 3) * size
-    direction = rng.normal(size=3) if rng.integers(2) else rng.choice([-1.0, 1.0]) * np.eye(3)[rng.integers(3)]
+    direction = (
+        rng.normal(size=3)
+        if rng.integers(2)
+        else rng.choice([-1.0, 1.0]) * np.eye(3)[rng.integers(3)]
+    )
     direction /= np.linalg.norm(direction)
     up = np.roll(direction, 1) + 0.1 * rng.normal(size=3)
     kind = rng.integers(4)
@@ -85,7 +94,9 @@ def same_pictures(scene, other):
 
 @given(
     kind=st.sampled_from(["noise", "smooth", "waves"]),
-    shape=st.one_of(SHAPES, SHAPES, st.tuples(*[st.integers(40, 72)] * 3)),  # the last more than the least cache holds
+    shape=st.one_of(
+        SHAPES, SHAPES, st.tuples(*[st.integers(40, 72)] * 3)
+    ),  # the last more than the least cache holds
     seed=SEEDS,
     rate=st.sampled_from([1, 3.25, 8, 32]),
     quantile=st.sampled_from([0.02, 0.3, 0.5, 0.9]),
@@ -95,7 +106,10 @@ def same_pictures(scene, other):
 def test_division_of_the_work(kind, shape, seed, rate, quantile, lit, division):
     """Speculation, memory budget, passes a render, buffers and decoding as a whole: not one bit of the picture."""
     values = random_field(kind, shape, seed)
-    image, isovalue = progiso.compress(make_image(values), rate), float(np.quantile(values, quantile))
+    image, isovalue = (
+        progiso.compress(make_image(values), rate),
+        float(np.quantile(values, quantile)),
+    )
     camera = random_camera(shape, seed)
     whole = Scene(image, isovalue, camera, SIZE, lit=lit)
     division = within_budget(division, image, isovalue, camera)
@@ -115,7 +129,9 @@ def test_another_process():
     )
     paths = [*sys.path, str(pathlib.Path(__file__).parent)]
     done = subprocess.run(
-        [sys.executable, "-c", f"import sys; sys.path[:0] = {paths!r}\n{program}"], capture_output=True, text=True
+        [sys.executable, "-c", f"import sys; sys.path[:0] = {paths!r}\n{program}"],
+        capture_output=True,
+        text=True,
     )
     assert done.returncode == 0, done.stderr
     assert done.stdout.split()[-1] == hashlib.sha256(pictures_of_every_kind()).hexdigest()
@@ -126,7 +142,11 @@ def pictures_of_every_kind():
     content = b""
     for seed, kind in enumerate(("noise", "smooth", "waves")):
         image = progiso.compress(make_image(random_field(kind, (20, 22, 18), seed)), 8)
-        for settings in ({}, CACHED, {"SpeculationLimit": 3, "MaximumPassesPerRender": 2, **CACHED}):
+        for settings in (
+            {},
+            CACHED,
+            {"SpeculationLimit": 3, "MaximumPassesPerRender": 2, **CACHED},
+        ):
             scene = Scene(image, 0.1, random_camera((20, 22, 18), seed), SIZE, lit=True, **settings)
             content += scene.depth().tobytes() + scene.picture().tobytes()
     return content
@@ -156,7 +176,9 @@ def padded(values, before, after):
     """The samples among others that are farther below zero than any of theirs, at another phase of the blocks."""
     value = float(np.floor(values.min())) - 0.5
     pad = list(zip(before[::-1], after[::-1]))
-    return make_image(np.pad(values, pad, constant_values=value), origin=[-float(n) for n in before])
+    return make_image(
+        np.pad(values, pad, constant_values=value), origin=[-float(n) for n in before]
+    )
 
 
 def lossless(plain):
@@ -201,10 +223,16 @@ def check_same_surface(scenes, volume, kind):
     grazing = tolerances.GRAZING_FRACTION if kind == "smooth" else tolerances.GRAZING_FRACTION_NOISE
     depths = [scene.depth() for scene in scenes]
     for scene, depth in zip(scenes, depths):
-        expected = cast(volume, scene.isovalue, scene.camera, SIZE, tolerances.SLACK, scene.clipping_range)
+        expected = cast(
+            volume, scene.isovalue, scene.camera, SIZE, tolerances.SLACK, scene.clipping_range
+        )
         few = np.isfinite(expected.early).sum() < FEW  # of a speck all rays may graze
         check_depth(depth, expected, 1.0 if few else grazing)
-    off = np.abs(np.subtract(*depths, out=np.full(depths[0].shape, np.inf), where=np.isfinite(depths).all(axis=0)))
+    off = np.abs(
+        np.subtract(
+            *depths, out=np.full(depths[0].shape, np.inf), where=np.isfinite(depths).all(axis=0)
+        )
+    )
     colors = [scene.picture()[off <= 2 * tolerances.DEPTH_VOXELS].astype(int) for scene in scenes]
     assert np.abs(np.subtract(*colors)).max(initial=0) <= tolerances.LIE_LEVELS
 
@@ -225,7 +253,13 @@ def test_no_ray_slips_through(closed, shape, seed, inside, division):
     camera = (cracks.camera_inside if inside else cracks.camera_outside)(field, rng)
     scale = camera.parallel_scale if camera.parallel else None
     camera = Camera(camera.position, camera.focal_point, camera.view_up, camera.view_angle, scale)
-    scene = Scene(image, cracks.ISOVALUE, camera, SIZE, **within_budget(division, image, cracks.ISOVALUE, camera))
+    scene = Scene(
+        image,
+        cracks.ISOVALUE,
+        camera,
+        SIZE,
+        **within_budget(division, image, cracks.ISOVALUE, camera),
+    )
     depth = scene.depth(cracks.CLIPPING_INSIDE if inside else None)
     missed, invented, judged = cracks.slipped(depth, field, camera)
     assert not missed.any() and not invented.any()

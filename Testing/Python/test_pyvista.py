@@ -1,10 +1,11 @@
 """pyvista, as its users have it: accessor, plotter component, and pictures against baselines."""
 
 import numpy as np
-import progiso
 import pytest
 from pictures import check_picture
 from support import blobs, marschner_lobb, reference_values, same_bits, values_of
+
+import progiso
 
 pyvista = pytest.importorskip("pyvista")
 
@@ -54,11 +55,15 @@ def test_accessor():
 def test_save_and_read(tmp_path):
     compressed = grid(blobs((12, 13, 14), 1)).progiso.compress(rate=4)
     compressed.save(tmp_path / "volume.vti")
-    assert same_bits(reference_values(pyvista.read(tmp_path / "volume.vti")), reference_values(compressed))
+    assert same_bits(
+        reference_values(pyvista.read(tmp_path / "volume.vti")), reference_values(compressed)
+    )
 
 
 def test_marschner_lobb(plotter, check):
-    plotter.progiso.add_isosurface(grid(marschner_lobb(64)).progiso.compress(rate=8), 0.5, color="tan", specular=0.4)
+    plotter.progiso.add_isosurface(
+        grid(marschner_lobb(64)).progiso.compress(rate=8), 0.5, color="tan", specular=0.4
+    )
     plotter.camera_position = [(150, 110, 130), (32, 32, 32), (0, 0, 1)]
     check("marschner-lobb")
 
@@ -66,7 +71,9 @@ def test_marschner_lobb(plotter, check):
 def test_among_meshes(plotter, check):
     """A mesh cuts through the surface, another shines through."""
     plotter.progiso.add_isosurface(grid(blobs((40, 40, 40), 2)), 0.1, color="ivory", rate=8)
-    plotter.add_mesh(pyvista.Sphere(radius=12, center=(28, 12, 24)), color="steelblue", smooth_shading=True)
+    plotter.add_mesh(
+        pyvista.Sphere(radius=12, center=(28, 12, 24)), color="steelblue", smooth_shading=True
+    )
     plotter.add_mesh(pyvista.Box(bounds=(-5, 45, 18, 20, -5, 45)), color="crimson", opacity=0.4)
     plotter.camera_position = [(110, -60, 70), (20, 20, 20), (0, 0, 1)]
     check("among-meshes")
@@ -84,7 +91,9 @@ def test_cells_in_parallel_projection(plotter, check):
 
 def test_user_matrix(plotter, check):
     matrix = pyvista.Transform().rotate_z(30).scale(1, 1, 1.6).translate(3, 2, 1).matrix
-    plotter.progiso.add_isosurface(grid(blobs((30, 30, 30), 4)), 0.0, color="orange", user_matrix=matrix)
+    plotter.progiso.add_isosurface(
+        grid(blobs((30, 30, 30), 4)), 0.0, color="orange", user_matrix=matrix
+    )
     plotter.add_axes_at_origin(labels_off=True)
     plotter.camera_position = [(90, -40, 80), (10, 20, 20), (0, 0, 1)]
     check("user-matrix")
@@ -109,6 +118,13 @@ def test_scans(plotter, check, name, isovalue, position, up):
 
     volume = pyvista.wrap(progiso.read(fetch(name))).progiso.compress(rate=8)
     plotter.progiso.add_isosurface(volume, isovalue, color="ivory")
-    centre, reach = np.array(volume.center), 1.9 * max(np.subtract(volume.bounds[1::2], volume.bounds[::2]))
-    plotter.camera_position = [tuple(centre + reach * np.array(position) / np.linalg.norm(position)), tuple(centre), up]
+    centre, reach = (
+        np.array(volume.center),
+        1.9 * max(np.subtract(volume.bounds[1::2], volume.bounds[::2])),
+    )
+    plotter.camera_position = [
+        tuple(centre + reach * np.array(position) / np.linalg.norm(position)),
+        tuple(centre),
+        up,
+    ]
     check(name)

@@ -7,12 +7,13 @@ import sys
 import warnings
 
 import numpy as np
-import progiso
 import pytest
 from support import blobs
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkRenderingUI import vtkGenericRenderWindowInteractor
 from vtkmodules.vtkWebCore import vtkWebApplication
+
+import progiso
 
 pyvista = pytest.importorskip("pyvista")
 
@@ -60,7 +61,9 @@ def colour(plotter):
 
 def test_colours_for_each_isovalue(plotter, ball):
     """In every form that pyvista takes for a colour; one alone is not taken for several."""
-    prop = plotter.progiso.add_isosurface(ball, [12, 6], color=["red", (0, 0, 255)], opacity=[0, 1], lighting=False)
+    prop = plotter.progiso.add_isosurface(
+        ball, [12, 6], color=["red", (0, 0, 255)], opacity=[0, 1], lighting=False
+    )
     assert colour(plotter) == (0, 0, 1)
     isovalues(prop).SetValue(1, 15)
     assert colour(plotter) == (0, 0, 1)
@@ -92,7 +95,9 @@ def test_several_isovalues_are_coloured_by_value(plotter, ball):
     prop = plotter.progiso.add_isosurface(ball, [5, 12], lighting=False)
     low, high = ball.progiso.info["range"]
     assert plotter.scalar_bars["distance"].GetLookupTable().GetRange() == pytest.approx((low, high))
-    expected = pyvista.LookupTable(plotter.theme.cmap, scalar_range=(low, high)).map_value(12, opacity=False)
+    expected = pyvista.LookupTable(plotter.theme.cmap, scalar_range=(low, high)).map_value(
+        12, opacity=False
+    )
     assert colour(plotter) == expected
     assert prop.GetProperty().GetScalarOpacity().GetValue(12) == 1
 
@@ -138,12 +143,16 @@ def test_errors_name_what_is_wrong(plotter, ball, case):
 def test_slider_moves_the_isovalue(plotter, ball):
     """A volume is compressed once, and its blocks' ranges are found once."""
     image = ball.progiso.decompress()
-    prop = plotter.progiso.add_isosurface_slider(image, rng=(4, 16), title="radius", color="lime", lighting=False)
+    prop = plotter.progiso.add_isosurface_slider(
+        image, rng=(4, 16), title="radius", color="lime", lighting=False
+    )
     mapper = prop.GetMapper()
     assert isovalues(prop).GetValue(0) == 10
     small = np.count_nonzero(picture(plotter)[..., 1] == 255)
     held = mapper.GetInput()
-    (widget,) = plotter.widgets.slider_widgets if hasattr(plotter, "widgets") else plotter.slider_widgets
+    (widget,) = (
+        plotter.widgets.slider_widgets if hasattr(plotter, "widgets") else plotter.slider_widgets
+    )
     assert widget.GetRepresentation().GetTitleText() == "radius"
     widget.GetRepresentation().SetValue(15)
     widget.InvokeEvent("InteractionEvent")
@@ -190,7 +199,10 @@ def test_subplots_and_linked_views(ball):
     assert plotter.progiso.surface_at(props[0], middle + middle // 2, SIZE[1] // 2) is None
     plotter.camera.zoom(0.5)
     smaller = picture(plotter)[..., 0] > 128
-    assert smaller[:, :middle].sum() < lit[:, :middle].sum() and smaller[:, middle:].sum() < lit[:, middle:].sum()
+    assert (
+        smaller[:, :middle].sum() < lit[:, :middle].sum()
+        and smaller[:, middle:].sum() < lit[:, middle:].sum()
+    )
     plotter.close()
 
 
@@ -369,10 +381,23 @@ def test_passes_show_on_screen(lacking, tmp_path):
         lacking("needs xvfb-run")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     environment.pop("VTK_DEFAULT_OPENGL_WINDOW", None)
-    command = ["xvfb-run", "-n", str(os.getpid()), "-s", "-screen 0 640x480x24", sys.executable, "-c", ON_SCREEN]
-    shown = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120, cwd=tmp_path)
+    command = [
+        "xvfb-run",
+        "-n",
+        str(os.getpid()),
+        "-s",
+        "-screen 0 640x480x24",
+        sys.executable,
+        "-c",
+        ON_SCREEN,
+    ]
+    shown = subprocess.run(
+        command, env=environment, capture_output=True, text=True, timeout=120, cwd=tmp_path
+    )
     fractions = [float(word) for word in shown.stdout.split()]
-    assert len(set(fractions)) > 3 and fractions[0] < 1 and fractions[-1] == 1, shown.stdout + shown.stderr
+    assert len(set(fractions)) > 3 and fractions[0] < 1 and fractions[-1] == 1, (
+        shown.stdout + shown.stderr
+    )
     assert fractions == sorted(fractions)
 
 

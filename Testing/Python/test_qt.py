@@ -17,6 +17,8 @@ def test_qt_interactor_refines(lacking, tmp_path):
     completed = [image["completed"] for image in found["images"]]
     assert completed == sorted(completed) and completed[-1] == 1 and len(set(completed)) > 3
     first = next(image for image in found["images"] if image["completed"] > 0)
-    assert found["images"][-1]["turns"] > first["turns"], "other events had to wait until the image was there"
+    assert found["images"][-1]["turns"] > first["turns"], (
+        "other events had to wait until the image was there"
+    )
     assert found["at_once"] and found["same"] and found["hits"] > 1000 and found["errors"] == 0
     assert picture.stat().st_size > 5000

@@ -1,14 +1,15 @@
 """The least rate for a tolerance: that it keeps it, and that a bit less a block does not."""
 
 import numpy as np
-import progiso
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from progiso import rates
 from support import blobs, make_image, marschner_lobb, noise, reference_values
 from test_cli import call
 from vtkmodules.util.numpy_support import vtk_to_numpy
+
+import progiso
+from progiso import rates
 
 
 def error_at(values, rate, **choice):
@@ -17,7 +18,9 @@ def error_at(values, rate, **choice):
     about = progiso.describe(image)
     decoded = about["offset"] + about["scale"] * reference_values(image).astype(float)
     with np.errstate(invalid="ignore"):
-        return float(np.nanmax(np.where(np.isfinite(values), np.abs(decoded - np.asarray(values, float)), 0)))
+        return float(
+            np.nanmax(np.where(np.isfinite(values), np.abs(decoded - np.asarray(values, float)), 0))
+        )
 
 
 def check_least(values, tolerance, **options):
@@ -50,14 +53,18 @@ def test_random_fields(shape, kind, smooth, seed, part, relative):
 
 
 def test_finer_takes_more():
-    found = [check_least(marschner_lobb(41), tolerance) for tolerance in (0.5, 0.1, 0.01, 1e-3, 1e-5)]
+    found = [
+        check_least(marschner_lobb(41), tolerance) for tolerance in (0.5, 0.1, 0.01, 1e-3, 1e-5)
+    ]
     assert found == sorted(found) and found[0] < 3 and found[-1] > 9
 
 
 @pytest.mark.parametrize("depth", [4, 13, 32, 33, 47])
 def test_some_slices_at_a_time(depth, monkeypatch):
     """However many, also where a single one is left over: the rate of the volume in one piece, or of a neighbour that fits."""
-    values = noise((depth, 11, 14), depth) * np.linspace(0.1, 3, depth, dtype=np.float32)[:, None, None]
+    values = (
+        noise((depth, 11, 14), depth) * np.linspace(0.1, 3, depth, dtype=np.float32)[:, None, None]
+    )
     whole = check_least(values, 0.01)
     monkeypatch.setattr(rates, "_SLAB", 1000)
     fractions = []
@@ -121,7 +128,9 @@ def test_tolerance_must_be_positive(tolerance):
 def test_what_no_rate_keeps():
     """Differences that float32 does not have; the message tells what can be kept, and that can."""
     values = np.append(1e8 + noise((8, 8, 7)).astype(float), np.zeros((8, 8, 1)), axis=2)
-    with pytest.raises(ValueError, match="no rate keeps the samples within 0.001: at 32 bits some are off by") as error:
+    with pytest.raises(
+        ValueError, match="no rate keeps the samples within 0.001: at 32 bits some are off by"
+    ) as error:
         progiso.least_rate(make_image(values), 1e-3)
     check_least(values, float(str(error.value).split()[-1]) * 1.01)
 
@@ -133,7 +142,12 @@ def test_what_no_rate_keeps():
         (make_image(noise((5, 5, 5))), {"component": 1}, RuntimeError, "Component is 1"),
         (make_image(noise((5, 5, 5))), {"array": "none"}, ValueError, "no array 'none'"),
         (make_image(noise((1, 5, 5))), {}, RuntimeError, "5 x 5 x 1|5x5x1"),
-        (progiso.compress(make_image(noise((5, 5, 5)))), {}, RuntimeError, "is a compressed volume already"),
+        (
+            progiso.compress(make_image(noise((5, 5, 5)))),
+            {},
+            RuntimeError,
+            "is a compressed volume already",
+        ),
         (None, {}, TypeError, "expected a vtkImageData"),
     ],
 )
@@ -154,11 +168,15 @@ def test_command_line(tmp_path):
     call(tmp_path, "compress", "blobs_24x22x20_float32.raw", "blobs.vti", "--rate", rate)
     volume = progiso.read(tmp_path / "blobs.vti")
     assert progiso.describe(volume)["rate"] == float(rate)
-    relative = call(tmp_path, "rate", "blobs_24x22x20_float32.raw", "--tolerance", 0.001, "--relative").strip()
+    relative = call(
+        tmp_path, "rate", "blobs_24x22x20_float32.raw", "--tolerance", 0.001, "--relative"
+    ).strip()
     assert float(relative) == check_least(values, 0.001, relative=True)
     for options, message in (
         (("--tolerance", 0), "tolerance must be a number above 0"),
         (("--tolerance", 1e-12), "no rate keeps the samples"),
     ):
-        assert message in call(tmp_path, "rate", "blobs_24x22x20_float32.raw", *options, succeeds=False)
+        assert message in call(
+            tmp_path, "rate", "blobs_24x22x20_float32.raw", *options, succeeds=False
+        )
     assert "--tolerance" in call(tmp_path, "rate", "blobs_24x22x20_float32.raw", succeeds=False)

@@ -3,7 +3,6 @@
 import ctypes
 
 import numpy as np
-import progiso
 import pytest
 import tolerances
 from oracle.caster import Camera, cast
@@ -14,7 +13,14 @@ from vtkmodules.vtkCommonCore import vtkFloatArray
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
 from vtkmodules.vtkFiltersSources import vtkPlaneSource
-from vtkmodules.vtkRenderingCore import vtkActor, vtkColorTransferFunction, vtkLight, vtkPolyDataMapper
+from vtkmodules.vtkRenderingCore import (
+    vtkActor,
+    vtkColorTransferFunction,
+    vtkLight,
+    vtkPolyDataMapper,
+)
+
+import progiso
 
 SIZE = (160, 120)
 ISOVALUE = 0.1
@@ -58,10 +64,15 @@ def test_pieces_meet_without_a_seam(axis, cells, settings):
     end = values.GetDimensions()[axis] - 1
     ranges = (0, end), (0, 17), (17, end)
     whole, parts, other = (
-        Scene(piece_of(compressed, axis, *part), ISOVALUE, camera, SIZE, lit=True, **settings) for part in ranges
+        Scene(piece_of(compressed, axis, *part), ISOVALUE, camera, SIZE, lit=True, **settings)
+        for part in ranges
     )
     hits = [np.isfinite(scene.depth()) for scene in (whole, parts, other)]
-    assert (hits[0] == (hits[1] | hits[2])).all() and not (hits[0] == hits[1]).all() and not (hits[0] == hits[2]).all()
+    assert (
+        (hits[0] == (hits[1] | hits[2])).all()
+        and not (hits[0] == hits[1]).all()
+        and not (hits[0] == hits[2]).all()
+    )
     parts.renderer.AddVolume(other.volume)
     parts.render()
     difference = np.abs(parts.picture().astype(int) - whole.picture()).max(axis=2)
@@ -113,7 +124,9 @@ def test_depth_buffer(image, parallel):
     near, far = scene.renderer.GetActiveCamera().GetClippingRange()
 
     eye = (scene_depth * across(camera, SIZE))[hit]
-    window_z = (eye - near) / (far - near) if parallel else far * (eye - near) / (eye * (far - near))
+    window_z = (
+        (eye - near) / (far - near) if parallel else far * (eye - near) / (eye * (far - near))
+    )
     assert hit.sum() > 1000
     assert np.abs(z[hit] - window_z).max() < tolerances.DEPTH_BUFFER
 
@@ -175,7 +188,9 @@ def test_visibility_and_background(image):
     assert np.all(scene.picture() == np.round(np.array([0.2, 0.3, 0.4]) * 255))
 
 
-@pytest.mark.parametrize("direction", [None, np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))[0]])
+@pytest.mark.parametrize(
+    "direction", [None, np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))[0]]
+)
 @pytest.mark.parametrize("spacing", [(1, 1, 1), (1, 2, 0.5)])
 def test_light_falls_on_smooth_normals(spacing, direction):
     """A sphere is lit like a sphere: no facet, no block, no seam, whatever the geometry."""
@@ -187,7 +202,11 @@ def test_light_falls_on_smooth_normals(spacing, direction):
     radius = 18.0 * min(spacing)
     values = radius + 5 - np.linalg.norm(places - centre, axis=-1)
     image = progiso.compress(make_image(values, spacing=spacing, direction=direction), 24)
-    camera = Camera(tuple(centre + [70, 20, 40]), tuple(centre), view_angle=2.4 * np.degrees(np.arctan(radius / 83)))
+    camera = Camera(
+        tuple(centre + [70, 20, 40]),
+        tuple(centre),
+        view_angle=2.4 * np.degrees(np.arctan(radius / 83)),
+    )
     scene = Scene(image, 5.0, camera, SIZE)
     colour(scene.volume, (1, 1, 1))
     scene.volume.GetProperty().ShadeOn()
@@ -242,9 +261,10 @@ def test_gl_errors_are_counted(image):
     """The count that every scene's render is checked by does count: an error made on purpose shows in it."""
     scene = Scene(image, ISOVALUE, orbit(reference_volume(image), 1, 4), SIZE)
     scene.render()
-    library = {"vtkOSOpenGLRenderWindow": "libOSMesa.so.8", "vtkEGLRenderWindow": "libOpenGL.so.0"}.get(
-        scene.window.GetClassName(), "libGL.so.1"
-    )
+    library = {
+        "vtkOSOpenGLRenderWindow": "libOSMesa.so.8",
+        "vtkEGLRenderWindow": "libOpenGL.so.0",
+    }.get(scene.window.GetClassName(), "libGL.so.1")
     scene.window.MakeCurrent()
     ctypes.CDLL(library).glEnable(0xFFFF)
     assert scene.mapper.GetNumberOfGLErrors() == 1
@@ -274,7 +294,9 @@ def test_errors_name_what_is_wrong(name):
     scene = Scene(BAD[name](), 0.0, Camera((30, 30, 30), (4, 4, 4)))
     with vtk_messages() as messages:
         scene.window.Render()
-    assert any("vtkProgressiveIsosurfaceMapper" in m or "vtkImageZFPCompress" in m for m in messages), messages
+    assert any(
+        "vtkProgressiveIsosurfaceMapper" in m or "vtkImageZFPCompress" in m for m in messages
+    ), messages
 
 
 def mesh_scene(image, isovalue, scene):
@@ -303,7 +325,9 @@ def test_lit_like_meshes():
     pictures = {}
     for like_meshes in (True, False):
         camera = orbit(reference_volume(progiso.compress(image, 16)), 1, 4)
-        scene = Scene(image, 0.1, camera, (160, 120), lit=True, Rate=24.0, LitLikeMeshes=like_meshes)
+        scene = Scene(
+            image, 0.1, camera, (160, 120), lit=True, Rate=24.0, LitLikeMeshes=like_meshes
+        )
         colour(scene.volume, (1, 1, 1))
         light = vtkLight()
         light.SetLightTypeToCameraLight()
@@ -314,4 +338,6 @@ def test_lit_like_meshes():
         pictures[like_meshes] = scene.picture().astype(int)
         mesh = mesh_scene(image, 0.1, scene)
     off = {key: np.abs(picture - mesh).mean() for key, picture in pictures.items()}
-    assert off[True] < tolerances.MESH_LIGHT_MEAN and off[False] > 5 * tolerances.MESH_LIGHT_MEAN, off
+    assert off[True] < tolerances.MESH_LIGHT_MEAN and off[False] > 5 * tolerances.MESH_LIGHT_MEAN, (
+        off
+    )

@@ -5,11 +5,12 @@ import subprocess
 import sys
 
 import numpy as np
-import progiso
 import pytest
 from progiso.data import GENERATORS, compressed, fetch
-from progiso.slabs import compute_slabs
 from support import PEAK, make_image, metadata, noise, stream_of
+
+import progiso
+from progiso.slabs import compute_slabs
 
 METADATA = ("Version", "BlockBits", "Dimensions", "Range", "ScalarType", "Component", "Association")
 
@@ -40,18 +41,24 @@ def test_however_the_slices_are_dealt(rate, depth):
     check_same(progiso.compress_slabs(dealt(values, depth), (13, 9, 27), rate, "name"), expected)
 
 
-@pytest.mark.parametrize("shape", [(a, b, c) for a in (2, 5, 8, 11) for b in (3, 8) for c in (2, 9, 20)])
+@pytest.mark.parametrize(
+    "shape", [(a, b, c) for a in (2, 5, 8, 11) for b in (3, 8) for c in (2, 9, 20)]
+)
 def test_partial_blocks(shape):
     values = noise(shape, 2)
     expected = progiso.compress(make_image(values, "name"), 3)
     check_same(progiso.compress_slabs(dealt(values, 4), shape[::-1], 3, "name"), expected)
-    check_same(progiso.compress_slabs(values.__getitem__, shape[::-1], 3, "name", threads=3), expected)
+    check_same(
+        progiso.compress_slabs(values.__getitem__, shape[::-1], 3, "name", threads=3), expected
+    )
 
 
 @pytest.mark.parametrize("kind", ["i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8", ">f4"])
 def test_sample_types(kind):
     values = (noise((9, 6, 7), 3) * 30).astype(kind)
-    expected = progiso.compress(make_image(values.astype(values.dtype.newbyteorder("=")), "name"), 8)
+    expected = progiso.compress(
+        make_image(values.astype(values.dtype.newbyteorder("=")), "name"), 8
+    )
     check_same(progiso.compress_slabs(dealt(values, 4), (7, 6, 9), 8, "name"), expected)
 
 
@@ -158,11 +165,29 @@ def test_interrupted_leaves_nothing(tmp_path):
 
 def test_command_line(tmp_path):
     """Prints the path of a file that holds what the library makes."""
-    command = [sys.executable, "-m", "progiso", "data", "porous", "--size", "24x20x17", "--rate", "3", "--seed", "5"]
+    command = [
+        sys.executable,
+        "-m",
+        "progiso",
+        "data",
+        "porous",
+        "--size",
+        "24x20x17",
+        "--rate",
+        "3",
+        "--seed",
+        "5",
+    ]
     done = subprocess.run(
-        command, env=dict(os.environ, XDG_CACHE_HOME=str(tmp_path)), capture_output=True, text=True, check=True
+        command,
+        env=dict(os.environ, XDG_CACHE_HOME=str(tmp_path)),
+        capture_output=True,
+        text=True,
+        check=True,
     )
-    expected = progiso.compress(progiso.read(fetch("porous", size=(24, 20, 17), seed=5, folder=tmp_path)), 3)
+    expected = progiso.compress(
+        progiso.read(fetch("porous", size=(24, 20, 17), seed=5, folder=tmp_path)), 3
+    )
     assert stream_of(progiso.read(done.stdout.strip())) == stream_of(expected)
 
 
@@ -179,5 +204,7 @@ print(peak() - before)
 
 def test_memory_is_bounded_by_slabs(tmp_path):
     """320 MiB of samples and 10 MiB of stream, made in less than a third of that; about 52 MiB are usual."""
-    done = subprocess.run([sys.executable, "-c", MEASURED, tmp_path], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", MEASURED, tmp_path], capture_output=True, text=True, check=True
+    )
     assert int(done.stdout) < 100 * 2**20

@@ -1,21 +1,24 @@
 """The statistics say what happened, and the memory stays within its formula."""
 
 import numpy as np
-import progiso
 import pytest
 import tolerances
 from oracle.caster import Camera
-from progiso.statistics import PASS_KEYS
 from scenes import CACHED, Scene, orbit
 from support import make_image, marschner_lobb, metadata, noise, reference_volume, stream_of
 from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction, vtkPlane
+
+import progiso
+from progiso.statistics import PASS_KEYS
 
 
 @pytest.fixture(scope="module")
 def scene():
     image = progiso.compress(make_image(marschner_lobb(64)), 4)
     camera = orbit(reference_volume(image), 1, 4)
-    scene = Scene(image, 0.5, camera, (200, 150), SpeculationLimit=4, DetailedStatistics=True, **CACHED)
+    scene = Scene(
+        image, 0.5, camera, (200, 150), SpeculationLimit=4, DetailedStatistics=True, **CACHED
+    )
     scene.image = image
     scene.rays = scene.depth()
     return scene
@@ -24,10 +27,27 @@ def scene():
 def test_keys(scene):
     statistics = scene.statistics()
     assert set(statistics) == {
-        *("passes", "total_ms", "memory", "stages", "left_out", "stage_ms", "converged", "camera", "size", "gl")
+        *(
+            "passes",
+            "total_ms",
+            "memory",
+            "stages",
+            "left_out",
+            "stage_ms",
+            "converged",
+            "camera",
+            "size",
+            "gl",
+        )
     }
     assert set(statistics["memory"]) == {"buffers", "total", "compressed", "budget", "least_budget"}
-    assert set(statistics["camera"]) >= {"position", "focal_point", "view_up", "view_angle", "parallel"}
+    assert set(statistics["camera"]) >= {
+        "position",
+        "focal_point",
+        "view_up",
+        "view_angle",
+        "parallel",
+    }
     assert all(set(PASS_KEYS) <= set(p) for p in statistics["passes"])
     assert statistics["size"] == [200, 150]
     assert statistics["stages"] and not set(statistics["stages"]) & set(statistics["left_out"])
@@ -37,7 +57,10 @@ def test_keys(scene):
 def test_passes_add_up(scene):
     statistics = scene.statistics()
     passes = statistics["passes"]
-    assert [p["pass"] for p in passes] in (list(range(len(passes))), list(range(1, len(passes) + 1)))
+    assert [p["pass"] for p in passes] in (
+        list(range(len(passes))),
+        list(range(1, len(passes) + 1)),
+    )
     active = [p["active_rays"] for p in passes]
     assert active == sorted(active, reverse=True) and 0 < active[0] <= 200 * 150
     completed = [p["completed"] for p in passes]
@@ -62,14 +85,20 @@ def test_table_says_the_same(scene):
     assert table.GetNumberOfRows() == len(passes)
     for key in PASS_KEYS:
         column = table.GetColumnByName(key)
-        assert [column.GetTuple1(i) for i in range(len(passes))] == pytest.approx([p[key] for p in passes])
+        assert [column.GetTuple1(i) for i in range(len(passes))] == pytest.approx(
+            [p[key] for p in passes]
+        )
 
 
 def test_details_are_there_when_asked_for(scene):
     """Every stage that ran for the image has its time; without details nobody counts blocks or asks the clock."""
     statistics = scene.statistics()
     assert set(statistics["stage_ms"]) == set(statistics["stages"])
-    assert all(ms > 0 for stage, ms in statistics["stage_ms"].items() if stage not in ("BlockRanges", "CacheReset"))
+    assert all(
+        ms > 0
+        for stage, ms in statistics["stage_ms"].items()
+        if stage not in ("BlockRanges", "CacheReset")
+    )
     plain = Scene(scene.image, 0.5, scene.camera, (200, 150), SpeculationLimit=4, **CACHED)
     assert plain.depth().tobytes() == scene.rays.tobytes()
     about = plain.statistics()
@@ -100,14 +129,18 @@ def test_memory_formula(shape, size, settings):
 
 def check_memory(image, statistics):
     memory = statistics["memory"]
-    cache = sum(bytes_ for name, bytes_ in memory["buffers"].items() if name.lower().startswith("cache"))
+    cache = sum(
+        bytes_ for name, bytes_ in memory["buffers"].items() if name.lower().startswith("cache")
+    )
     assert cache > 0
     blocks = np.prod([-(-int(n) // 4) for n in metadata(image, "Dimensions")])
-    bound = tolerances.BYTES_PER_BLOCK * blocks + tolerances.BYTES_PER_PIXEL * np.prod(statistics["size"])
+    bound = tolerances.BYTES_PER_BLOCK * blocks + tolerances.BYTES_PER_PIXEL * np.prod(
+        statistics["size"]
+    )
     rest = memory["total"] - memory["compressed"] - cache
-    assert (
-        rest <= bound
-    ), f"{rest} bytes for {blocks} blocks and {np.prod(statistics['size'])} pixels: {memory['buffers']}"
+    assert rest <= bound, (
+        f"{rest} bytes for {blocks} blocks and {np.prod(statistics['size'])} pixels: {memory['buffers']}"
+    )
 
 
 # --- what a scene does not need is not there ---------------------------------------------------------------------------------
@@ -139,7 +172,14 @@ def test_a_small_volume_needs_no_cache(volume):
     assert set(buffers) == ALWAYS | {"normals"}
     assert buffers["cache_values"] == 256 * BLOCKS
     assert buffers["macrocells"] == 136 * MACROCELLS
-    assert stages == {"DecodeBlocks", "BlockRanges", "PlanPass", "CastRays", "FindNormals", "Composite"}
+    assert stages == {
+        "DecodeBlocks",
+        "BlockRanges",
+        "PlanPass",
+        "CastRays",
+        "FindNormals",
+        "Composite",
+    }
 
 
 def test_what_the_cache_adds(volume):

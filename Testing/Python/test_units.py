@@ -2,16 +2,25 @@
 test_filters.py and the rows of test_verify.py)."""
 
 import numpy as np
-import progiso
 import pytest
 import tolerances
-from progiso import vtkCompressedVolume, vtkCompressedVolumeBuilder
 from scenes import CACHED, Scene, orbit
-from support import blobs, make_image, metadata, reference_volume, stream_of, values_of, vtk_messages
+from support import (
+    blobs,
+    make_image,
+    metadata,
+    reference_volume,
+    stream_of,
+    values_of,
+    vtk_messages,
+)
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import reference
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction
+
+import progiso
+from progiso import vtkCompressedVolume, vtkCompressedVolumeBuilder
 
 OFFSET, SCALE = 1e6, 2.0**-10
 SHAPE = (20, 24, 28)
@@ -40,7 +49,10 @@ def isovalue_of(isovalue):
 def test_hits(plain, shifted, settings):
     """A hit is where the plain field's is, and tells the isovalue."""
     camera = orbit(reference_volume(plain), 1, 4)
-    scenes = [Scene(image, at, camera, SIZE, **settings) for image, at in ((plain, 0.1), (shifted, isovalue_of(0.1)))]
+    scenes = [
+        Scene(image, at, camera, SIZE, **settings)
+        for image, at in ((plain, 0.1), (shifted, isovalue_of(0.1)))
+    ]
     depths = [scene.depth() for scene in scenes]
     hit = np.isfinite(depths[0])
     assert hit.sum() > 1000 and np.mean(hit != np.isfinite(depths[1])) < 1e-3
@@ -59,7 +71,14 @@ def test_colours(plain, shifted):
         colors = vtkColorTransferFunction()
         colors.AddRGBPoint(low, 0, 0, 1)
         colors.AddRGBPoint(high, 1, 0, 0)
-        scene = Scene(plain, 0.1, orbit(reference_volume(plain), 1, 4), SIZE, ColorInputData=image, ColorLookupTable=colors)
+        scene = Scene(
+            plain,
+            0.1,
+            orbit(reference_volume(plain), 1, 4),
+            SIZE,
+            ColorInputData=image,
+            ColorLookupTable=colors,
+        )
         scene.render()
         pictures.append(scene.picture().astype(int))
     assert len(np.unique(pictures[0].reshape(-1, 3), axis=0)) > 1
@@ -69,12 +88,15 @@ def test_colours(plain, shifted):
 def test_contour(plain, shifted):
     """The same mesh; scalars are the isovalue, and gradients are of the samples."""
     meshes = [
-        progiso.contour(image, at, gradients=True) for image, at in ((plain, 0.1), (shifted, isovalue_of(0.1)))
+        progiso.contour(image, at, gradients=True)
+        for image, at in ((plain, 0.1), (shifted, isovalue_of(0.1)))
     ]
     points = [vtk_to_numpy(mesh.GetPoints().GetData()) for mesh in meshes]
     assert len(points[0]) == len(points[1]) > 100
     assert np.abs(points[0] - points[1]).max() < tolerances.UNITS_DEPTH
-    assert (vtk_to_numpy(meshes[1].GetPointData().GetScalars()) == np.float32(isovalue_of(0.1))).all()
+    assert (
+        vtk_to_numpy(meshes[1].GetPointData().GetScalars()) == np.float32(isovalue_of(0.1))
+    ).all()
     gradients = [vtk_to_numpy(mesh.GetPointData().GetArray("Gradients")) for mesh in meshes]
     assert np.abs(gradients[0] - gradients[1] / SCALE).max() < tolerances.UNITS_DEPTH
 
@@ -90,7 +112,10 @@ def test_builder(shifted):
         assert builder.AddSlab(numpy_to_vtk((OFFSET + SCALE * FIELD)[z : z + 4].ravel(), deep=True))
     image = vtkImageData()
     assert builder.Finish(image)
-    assert stream_of(image) == stream_of(shifted) and progiso.describe(image)["range"] == about["range"]
+    assert (
+        stream_of(image) == stream_of(shifted)
+        and progiso.describe(image)["range"] == about["range"]
+    )
 
 
 def test_slabs(shifted):
@@ -115,7 +140,9 @@ def test_files(shifted, tmp_path):
     """A .vti keeps the units; a .zfp file cannot, and says so."""
     progiso.save(shifted, tmp_path / "shifted.vti")
     again = progiso.read(tmp_path / "shifted.vti")
-    assert np.array_equal(values_of(progiso.decompress(again)), values_of(progiso.decompress(shifted)))
+    assert np.array_equal(
+        values_of(progiso.decompress(again)), values_of(progiso.decompress(shifted))
+    )
     with pytest.raises(RuntimeError, match="units"):
         progiso.save(shifted, tmp_path / "shifted.zfp")
 
@@ -126,7 +153,9 @@ BAD_UNITS = {
 }
 
 
-@pytest.mark.parametrize("name, value", [(name, value) for name, values in BAD_UNITS.items() for value in values])
+@pytest.mark.parametrize(
+    "name, value", [(name, value) for name, values in BAD_UNITS.items() for value in values]
+)
 def test_bad_units_are_refused(shifted, name, value):
     image = vtkImageData()
     image.DeepCopy(shifted)

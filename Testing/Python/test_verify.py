@@ -7,11 +7,12 @@ import re
 import numpy as np
 import pytest
 from oracle.caster import Cast
-from progiso.cli import main
 from progiso.verification import agreement, command, cracks, scene
 from progiso.verification.case import FAILED, LIMIT, OK, Case, Outcome, Settings, row_of, worst_of
 from progiso.verification.table import SECTIONS, cases
 from test_cli import call
+
+from progiso.cli import main
 
 PLAIN = "plain: smooth field"
 KEYS = {"case", "verdict", "error", "limit", "time_ms"}
@@ -26,7 +27,9 @@ def test_quick_table(folder):
     """Every row has its verdict, and none fails; JSON, page and terminal tell the same."""
     printed = call(folder, "verify", "--quick", "--json", "rows.json", "--output", "page.md")
     document = json.loads((folder / "rows.json").read_text())
-    assert {"cpu", "cores", "gl", "vtk"} <= set(document["machine"]) and document["runs"][0]["complete"]
+    assert {"cpu", "cores", "gl", "vtk"} <= set(document["machine"]) and document["runs"][0][
+        "complete"
+    ]
     rows, page = document["rows"], (folder / "page.md").read_text()
     assert [row["case"] for row in rows] == [case.name for _, case in cases(quick=True)]
     for row in rows:
@@ -57,7 +60,9 @@ def broken(monkeypatch):
 
     def change(function):
         cast = scene.caster.cast
-        monkeypatch.setattr(scene.caster, "cast", lambda *given, **more: function(cast(*given, **more)))
+        monkeypatch.setattr(
+            scene.caster, "cast", lambda *given, **more: function(cast(*given, **more))
+        )
 
     return change
 
@@ -69,7 +74,12 @@ def test_a_picture_as_it_should_be():
 
 def test_a_shift_fails(broken):
     """By a thousandth of a voxel, of all three depths."""
-    broken(lambda cast: Cast(*(part + 1e-3 / cast.voxels for part in (cast.depth, cast.early, cast.late)), cast.voxels))
+    broken(
+        lambda cast: Cast(
+            *(part + 1e-3 / cast.voxels for part in (cast.depth, cast.early, cast.late)),
+            cast.voxels,
+        )
+    )
     row = measured()
     assert row["verdict"] == FAILED and row["error"] == pytest.approx(1e-3, rel=0.02)
 
@@ -86,7 +96,11 @@ def test_a_wrong_hit_fails(broken, value):
 
     broken(change)
     row = measured()
-    assert row["verdict"] == FAILED and row["error"] is None and "1 rays hit where they cannot" in row["note"]
+    assert (
+        row["verdict"] == FAILED
+        and row["error"] is None
+        and "1 rays hit where they cannot" in row["note"]
+    )
 
 
 def test_too_many_grazing_rays_fail(broken):
@@ -115,11 +129,15 @@ def test_an_exception_fails():
     ],
 )
 def test_verdicts(outcome, verdict):
-    assert row_of("section", Case("case", lambda _settings: outcome), Settings())["verdict"] == verdict
+    assert (
+        row_of("section", Case("case", lambda _settings: outcome), Settings())["verdict"] == verdict
+    )
 
 
 def test_the_worst_counts():
-    worst = worst_of([Outcome(1e-5, 1e-4, 3.0), Outcome(2.0, 10.0, 1.0), Outcome(0.0, 1.0, 2.0, defect="bad")])
+    worst = worst_of(
+        [Outcome(1e-5, 1e-4, 3.0), Outcome(2.0, 10.0, 1.0), Outcome(0.0, 1.0, 2.0, defect="bad")]
+    )
     assert (worst.error, worst.time_ms, worst.defect) == (2.0, 3.0, "bad")
 
 
@@ -144,7 +162,10 @@ def test_errors_name_what_is_wrong(arguments, message, capsys):
 
 def test_agreement_of_grazing_rays():
     """Between the first possible and the first certain crossing anything goes; beyond, the distance to them counts."""
-    early, late = np.array([[1.0, 1.0, 1.0, 1.0, np.inf]]), np.array([[3.0, 3.0, np.inf, np.inf, np.inf]])
+    early, late = (
+        np.array([[1.0, 1.0, 1.0, 1.0, np.inf]]),
+        np.array([[3.0, 3.0, np.inf, np.inf, np.inf]]),
+    )
     cast = Cast(np.full((1, 5), 2.0), early, late, np.full((1, 5), 10.0))
     found = agreement.compare(np.array([[2.5, 3.5, np.inf, 0.5, np.inf]], np.float32), cast)
     assert found.error.tolist() == [[0, 5, 0, 5, 0]] and found.grazing == 1 and found.hits == 3
@@ -162,7 +183,11 @@ def test_rays_through_a_hole_fail(monkeypatch):
     monkeypatch.setattr(cracks, "compressed_field", opened)
     ((section, case),) = cases(containing="box of noise")
     row = row_of(section, case, Settings(rays=40_000))
-    assert row["verdict"] == FAILED and row["limit"] == 0 < row["error"] and "first wrong: row" in row["note"]
+    assert (
+        row["verdict"] == FAILED
+        and row["limit"] == 0 < row["error"]
+        and "first wrong: row" in row["note"]
+    )
     rays = int(re.fullmatch(r"of (\d+) rays", row["unit"])[1])
     assert rays >= 10_000 and row["error"] <= rays
 

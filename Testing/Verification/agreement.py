@@ -77,7 +77,9 @@ def compare(depth, expected):
     same = (hit == np.isfinite(expected.depth)) & (
         np.abs(_difference(depth, expected.depth, both)) * expected.voxels <= allowed
     )
-    return Agreement(error, allowed, _part(~close, possible), _part(~same, possible), int(hit.sum()))
+    return Agreement(
+        error, allowed, _part(~close, possible), _part(~same, possible), int(hit.sum())
+    )
 
 
 def _part(chosen, among):

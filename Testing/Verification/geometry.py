@@ -126,9 +126,7 @@ def _clipped(settings):
     image = _field()
     camera = orbit_camera(image, 1, 4)
     distance = float(np.linalg.norm(np.subtract(camera.position, camera.focal_point)))
-    return check_depths(
-        settings, image, _ISOVALUE, camera, clip=(distance - 4.0, distance + 3.0)
-    )
+    return check_depths(settings, image, _ISOVALUE, camera, clip=(distance - 4.0, distance + 3.0))
 
 
 def _zoomed(scale, settings):
@@ -168,7 +166,9 @@ CASES = (
         Case(f"spacing {x:g}, {y:g}, {z:g}", partial(_stretched, (x, y, z)), quick=False)
         for x, y, z in ((1, 1000, 1), (0.001, 1, 1), (1, 1, 0.001), (1000, 1, 0.001))
     ),
-    Case("origin 1e6, spacing 1e-3", partial(_placed, origin=(1e6, -1e6, 1e6), spacing=(1e-3,) * 3)),
+    Case(
+        "origin 1e6, spacing 1e-3", partial(_placed, origin=(1e6, -1e6, 1e6), spacing=(1e-3,) * 3)
+    ),
     Case("scale 1e-9", partial(_placed, spacing=(1e-9,) * 3)),
     Case("scale 1e9", partial(_placed, spacing=(1e9,) * 3)),
     Case(
@@ -183,9 +183,15 @@ CASES = (
     ),
     Case(
         "sheared by the prop's matrix",
-        partial(_placed, user=_matrix([[1, 0.4, 0], [0, 1, 0.2], [0.1, 0, 1.5]]), spacing=(1, 2, 1)),
+        partial(
+            _placed, user=_matrix([[1, 0.4, 0], [0, 1, 0.2], [0.1, 0, 1.5]]), spacing=(1, 2, 1)
+        ),
     ),
-    Case("mirrored by the prop's matrix", partial(_placed, user=_matrix(np.diag([1, 1, -1.0]))), False),
+    Case(
+        "mirrored by the prop's matrix",
+        partial(_placed, user=_matrix(np.diag([1, 1, -1.0]))),
+        False,
+    ),
     Case("cells, not points", partial(_placed, cells=True, spacing=(1, 0.5, 2)), quick=False),
     Case("2 x 2 x 2 samples", partial(_shape, (2, 2, 2))),
     Case("5 x 7 x 9 samples", partial(_shape, (9, 7, 5)), quick=False),
@@ -198,8 +204,14 @@ CASES = (
     Case("camera inside", partial(_from, (14.3, 11.2, 13.7))),
     Case("camera on a plane of voxels", partial(_from, (14.3, 11.2, 14.0)), quick=False),
     Case("camera on a voxel", partial(_from, (15.0, 12.0, 14.0))),
-    Case("camera on a face of the volume", partial(_from, (0.0, 12.4, 13.7), towards=(1, 0.1, 0.2))),
-    Case("camera on a corner of the volume", partial(_from, (0.0, 0.0, 0.0), towards=(1, 1, 1)), False),
+    Case(
+        "camera on a face of the volume", partial(_from, (0.0, 12.4, 13.7), towards=(1, 0.1, 0.2))
+    ),
+    Case(
+        "camera on a corner of the volume",
+        partial(_from, (0.0, 0.0, 0.0), towards=(1, 1, 1)),
+        False,
+    ),
     Case("rays along the axes, on planes of voxels", _along_axes),
     Case("rays through corners and edges of cells", _through_corners),
     Case("view angle 0.01 degrees", partial(_angle, 0.01)),

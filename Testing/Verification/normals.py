@@ -138,7 +138,9 @@ def check_normals(
         limit,
         milliseconds,
         "degrees",
-        "; ".join(filter(None, (note, f"{judged.sum()} normals, mean {angles.mean():.2g} degrees"))),
+        "; ".join(
+            filter(None, (note, f"{judged.sum()} normals, mean {angles.mean():.2g} degrees"))
+        ),
         defect="hits without a normal" if (lit != hit).any() else "" if judged.any() else "no hits",
     )
 
@@ -238,7 +240,12 @@ def _block_corner(cached, settings):
     isovalue = float(decoded(image).values[8, 8, 8])
     camera = looking((8.2, 8.3, 8.25), (8, 8, 8), (0, 0, 1), 20)
     return check_normals(
-        settings, image, isovalue, camera=camera, limit=tolerances.NORMAL_NOISE_DEGREES, cached=cached
+        settings,
+        image,
+        isovalue,
+        camera=camera,
+        limit=tolerances.NORMAL_NOISE_DEGREES,
+        cached=cached,
     )
 
 

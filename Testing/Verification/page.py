@@ -103,7 +103,9 @@ def _busy(run):
     others = run["others_cores"]
     if others is None or others < 0.1:
         return ""
-    return f" Others kept {number(others)} cores busy meanwhile: times are longer than they need be."
+    return (
+        f" Others kept {number(others)} cores busy meanwhile: times are longer than they need be."
+    )
 
 
 def _error(row):

@@ -65,7 +65,9 @@ def measure(listed, settings, started=None, jobs=1):
     fresh = multiprocessing.get_context("spawn")  # OpenGL does not survive a fork
     with ProcessPoolExecutor(min(jobs, len(listed)), fresh) as pool:
         rows = [pool.submit(_row_named, *name, settings) for name in names]
-        return [_awaited(started, n, *each, row) for n, (each, row) in enumerate(zip(listed, rows), 1)]
+        return [
+            _awaited(started, n, *each, row) for n, (each, row) in enumerate(zip(listed, rows), 1)
+        ]
 
 
 def _measured(started, number, section, case, settings):

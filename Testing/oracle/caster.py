@@ -67,7 +67,9 @@ class Volume:
         """Place `values` as ``vtkImageData`` does; `shift` is 0.5 where they belong to cells."""
         matrix = np.eye(4)
         matrix[:3, :3] = np.asarray(direction, float).reshape(3, 3) * np.asarray(spacing, float)
-        matrix[:3, 3] = np.asarray(origin, float) + matrix[:3, :3] @ (np.asarray(extent_start, float) + shift)
+        matrix[:3, 3] = np.asarray(origin, float) + matrix[:3, :3] @ (
+            np.asarray(extent_start, float) + shift
+        )
         return cls(np.asarray(values), np.asarray(user, float) @ matrix)
 
     @classmethod
@@ -76,7 +78,9 @@ class Volume:
         direction = image.GetDirectionMatrix()
         matrix = [[direction.GetElement(r, c) for c in range(3)] for r in range(3)]
         start = image.GetExtent()[::2]
-        return cls.from_geometry(values, image.GetOrigin(), image.GetSpacing(), matrix, start, user, shift)
+        return cls.from_geometry(
+            values, image.GetOrigin(), image.GetSpacing(), matrix, start, user, shift
+        )
 
 
 @dataclass(frozen=True)
@@ -114,13 +118,17 @@ class Camera:
         position, forward = np.asarray(self.position, float), self.forward
         right = _unit(np.cross(forward, np.asarray(self.view_up, float)))
         up = np.cross(right, forward)
-        row, column = np.divmod(np.arange(width * height) if pixels is None else np.asarray(pixels), width)
+        row, column = np.divmod(
+            np.arange(width * height) if pixels is None else np.asarray(pixels), width
+        )
         x, y = (column + 0.5) / width * 2 - 1, 1 - (row + 0.5) / height * 2
         offset = x.reshape(-1, 1) * (width / height) * right + y.reshape(-1, 1) * up
         if self.parallel_scale is not None:
             return position + self.parallel_scale * offset, np.broadcast_to(forward, offset.shape)
         directions = forward + np.tan(np.radians(self.view_angle) / 2) * offset
-        return np.broadcast_to(position, offset.shape), directions / np.linalg.norm(directions, axis=1, keepdims=True)
+        return np.broadcast_to(position, offset.shape), directions / np.linalg.norm(
+            directions, axis=1, keepdims=True
+        )
 
 
 @dataclass(frozen=True)
@@ -165,9 +173,13 @@ def cast(volume, isovalue, camera, size, slack=Slack(), clip=(0.0, np.inf), pixe
     """
     origins, directions = camera.rays(size, pixels)
     across = directions @ camera.forward
-    result = cast_rays(volume, isovalue, origins, directions, slack, clip[0] / across, clip[1] / across)
+    result = cast_rays(
+        volume, isovalue, origins, directions, slack, clip[0] / across, clip[1] / across
+    )
     shape = (size[1], size[0]) if pixels is None else (-1,)
-    return Cast(*(getattr(result, name).reshape(shape) for name in ("depth", "early", "late", "voxels")))
+    return Cast(
+        *(getattr(result, name).reshape(shape) for name in ("depth", "early", "late", "voxels"))
+    )
 
 
 def cast_rays(volume, isovalue, origins, directions, slack=Slack(), begin=0.0, end=np.inf):
@@ -180,7 +192,9 @@ def cast_rays(volume, isovalue, origins, directions, slack=Slack(), begin=0.0, e
     hits = np.full((3, len(starts)), np.inf)
     for first in range(0, len(starts), CHUNK):
         part = slice(first, first + CHUNK)
-        hits[:, part] = _cast_chunk(grid, starts[part].T, steps[part].T, begin[part], end[part], slack)
+        hits[:, part] = _cast_chunk(
+            grid, starts[part].T, steps[part].T, begin[part], end[part], slack
+        )
     return Cast(hits[1], hits[0], hits[2], np.linalg.norm(steps, axis=1))
 
 
@@ -220,7 +234,12 @@ def cast_all(volume, isovalues, camera, size, clip=(0.0, np.inf)):
     start = ((origins - volume.index_to_world[:3, 3]) @ to_index.T).T
     step = (directions @ to_index.T).T
     enter, leave = clip_to_box(
-        start, step, clip[0] / across, clip[1] / across, np.zeros(3), np.array(volume.values.shape[::-1]) - 1.0
+        start,
+        step,
+        clip[0] / across,
+        clip[1] / across,
+        np.zeros(3),
+        np.array(volume.values.shape[::-1]) - 1.0,
     )
     rays = np.flatnonzero(enter <= leave)
     parts = []
@@ -251,7 +270,9 @@ class _Grid:
         if volume.hidden is not None:
             values = np.where(_touched(~volume.hidden), values, 0)
         if values.ndim != 3 or min(values.shape) < 2:
-            raise ValueError(f"at least two samples are needed along each axis, got shape {values.shape}")
+            raise ValueError(
+                f"at least two samples are needed along each axis, got shape {values.shape}"
+            )
         if not all(np.isfinite(values[z]).all() for z in range(len(values))):
             raise ValueError("the volume holds values that are not finite")
         self.size = np.array(values.shape[::-1])
@@ -259,7 +280,9 @@ class _Grid:
         self.samples = values.ravel()
         self.isovalue = isovalue
         self.slack = slack
-        self.offsets = np.array([sum(d for d, bit in zip(self.strides, name) if bit == "1") for name in _CORNERS])
+        self.offsets = np.array(
+            [sum(d for d, bit in zip(self.strides, name) if bit == "1") for name in _CORNERS]
+        )
         # Cells are stored like samples, so that one index finds both.
         matters = np.zeros(values.shape, np.uint8)
         for z in range(0, len(values) - 1, _SLAB):
@@ -298,7 +321,8 @@ class _Grid:
             "xy": c["110"] - c["100"] - c["010"] + c["000"],
             "xz": c["101"] - c["100"] - c["001"] + c["000"],
             "yz": c["011"] - c["010"] - c["001"] + c["000"],
-            "xyz": (c["111"] - c["110"] - c["101"] + c["100"]) - (c["011"] - c["010"] - c["001"] + c["000"]),
+            "xyz": (c["111"] - c["110"] - c["101"] + c["100"])
+            - (c["011"] - c["010"] - c["001"] + c["000"]),
         }
         return polynomials, self._error(excess.min(axis=0), excess.max(axis=0))
 
@@ -338,8 +362,12 @@ def clip_to_box(start, step, begin, end, low, high):
             a, b = (low[axis] - start[axis]) / step[axis], (high[axis] - start[axis]) / step[axis]
         parallel = step[axis] == 0
         between = (start[axis] >= low[axis]) & (start[axis] <= high[axis])
-        near = np.maximum(near, np.where(parallel, np.where(between, -np.inf, np.inf), np.minimum(a, b)))
-        far = np.minimum(far, np.where(parallel, np.where(between, np.inf, -np.inf), np.maximum(a, b)))
+        near = np.maximum(
+            near, np.where(parallel, np.where(between, -np.inf, np.inf), np.minimum(a, b))
+        )
+        far = np.minimum(
+            far, np.where(parallel, np.where(between, np.inf, -np.inf), np.maximum(a, b))
+        )
     return near, far
 
 
@@ -350,8 +378,12 @@ def _cast_chunk(grid, start, step, begin, end, slack):
     enter, leave = clip_to_box(start, step, begin, end, np.zeros(3), last)
     if slack.position:
         # Rays that just touch the box, or just miss it, may be seen by another caster as it likes.
-        touch, off = clip_to_box(start, step, begin, end, np.full(3, -slack.position), last + slack.position)
-        core, out = clip_to_box(start, step, begin, end, np.full(3, slack.position), last - slack.position)
+        touch, off = clip_to_box(
+            start, step, begin, end, np.full(3, -slack.position), last + slack.position
+        )
+        core, out = clip_to_box(
+            start, step, begin, end, np.full(3, slack.position), last - slack.position
+        )
         edge = (touch <= off) & (core > out)
         hits[0, edge] = touch[edge]
     rays = np.flatnonzero(enter <= leave)
@@ -402,7 +434,9 @@ class _Walk:
         excess = _along(cells, place, np.zeros_like(place))[0]
         unsure = rays[(np.abs(excess) <= error) & (error > 0)]
         self.unsure[unsure] = True
-        self.hits[0, unsure] = np.minimum(self.hits[0, unsure], self.enter[unsure] + self.near[unsure])
+        self.hits[0, unsure] = np.minimum(
+            self.hits[0, unsure], self.enter[unsure] + self.near[unsure]
+        )
         self.side[rays] = np.where(excess >= 0, 1.0, -1.0)
 
     def _corner(self, rays=slice(None)):
@@ -428,13 +462,19 @@ class _Walk:
 
     def _advance(self, rays, axis):
         """Step to the next cells; return the rays that have one and still look for a crossing."""
-        go = (self.left[axis, rays] > 0) & (self.hits[2, rays] == np.inf) & (self.far[axis, rays] < self.leave[rays])
+        go = (
+            (self.left[axis, rays] > 0)
+            & (self.hits[2, rays] == np.inf)
+            & (self.far[axis, rays] < self.leave[rays])
+        )
         rays, axis = rays[go], axis[go]
         sign = self.sign[axis, rays]
         self.index[rays] += sign * self.grid.strides[axis]
         self.left[axis, rays] -= 1
         self.plane[axis, rays] += sign
-        self.far[axis, rays] = (self.plane[axis, rays] - self.start[axis, rays]) * self.inverse[axis, rays]
+        self.far[axis, rays] = (self.plane[axis, rays] - self.start[axis, rays]) * self.inverse[
+            axis, rays
+        ]
         return rays
 
     def _intersect(self, rays, far):
@@ -449,13 +489,17 @@ class _Walk:
         values = _evaluate(cubic[:, None, :], knots)
         for row, threshold in enumerate((error, np.zeros_like(error), -error)):
             # Equal to the isovalue is inside: reached from outside, not left from inside.
-            crossed = np.where((side > 0) & (threshold == 0), values < threshold, values <= threshold)
+            crossed = np.where(
+                (side > 0) & (threshold == 0), values < threshold, values <= threshold
+            )
             if row == 1:
                 crossed &= (self.grid.matters[self.index[rays]] & np.where(side > 0, 4, 8)) != 0
             new = np.flatnonzero(crossed.any(axis=0) & (self.hits[row, rays] == np.inf))
             if len(new):
                 s = _first_root(cubic[:, new], knots[:, new], crossed[:, new], threshold[new])
-                self.hits[row, rays[new]] = self.enter[rays[new]] + near[new] + s * (far[new] - near[new])
+                self.hits[row, rays[new]] = (
+                    self.enter[rays[new]] + near[new] + s * (far[new] - near[new])
+                )
 
 
 class _FullWalk(_Walk):
@@ -486,7 +530,9 @@ class _FullWalk(_Walk):
             falling = cubic[:, at] * np.where(inside[piece, at], 1, -1)
             there = np.repeat([[False], [True]], len(at), axis=1)
             s = _first_root(falling, knots[piece : piece + 2, at], there, np.zeros(len(at)))
-            self.found.append((rays[at], self.enter[rays[at]] + near[at] + s * (far[at] - near[at])))
+            self.found.append(
+                (rays[at], self.enter[rays[at]] + near[at] + s * (far[at] - near[at]))
+            )
 
 
 # --- the cubic along a ray --------------------------------------------------------------------------------------------------
@@ -522,7 +568,9 @@ def _monotone_knots(cubic):
     q = -0.5 * (b + np.where(b < 0, -root, root))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         extrema = np.stack([q / a, c / q])
-    extrema = np.sort(np.clip(np.nan_to_num(extrema, nan=0.0, posinf=1.0, neginf=0.0), 0, 1), axis=0)
+    extrema = np.sort(
+        np.clip(np.nan_to_num(extrema, nan=0.0, posinf=1.0, neginf=0.0), 0, 1), axis=0
+    )
     return np.concatenate([np.zeros((1, len(c))), extrema, np.ones((1, len(c)))])
 
 

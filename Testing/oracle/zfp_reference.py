@@ -60,7 +60,16 @@ def _decode_by_tool(stream, dimensions, block_bits):
     with tempfile.TemporaryDirectory() as folder:
         packed, raw = pathlib.Path(folder, "values.zfp"), pathlib.Path(folder, "values.raw")
         packed.write_bytes(stream)
-        _zfp("-f", *_size(dimensions), "-r", repr(block_bits / VALUES_PER_BLOCK), "-z", packed, "-o", raw)
+        _zfp(
+            "-f",
+            *_size(dimensions),
+            "-r",
+            repr(block_bits / VALUES_PER_BLOCK),
+            "-z",
+            packed,
+            "-o",
+            raw,
+        )
         return np.fromfile(raw, np.float32).reshape(dimensions[::-1])
 
 

@@ -13,11 +13,9 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-import progiso
 import vtkmodules.vtkInteractionStyle  # noqa: F401
 import vtkmodules.vtkRenderingFreeType  # noqa: F401
 import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: F401
-from progiso.cli import main
 from progiso.data import fetch
 from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction
 from vtkmodules.vtkFiltersCore import vtkContourFilter, vtkFlyingEdges3D, vtkPolyDataNormals
@@ -38,6 +36,9 @@ from vtkmodules.vtkRenderingCore import (
     vtkWindowToImageFilter,
 )
 from vtkmodules.vtkRenderingVolume import vtkGPUVolumeRayCastMapper
+
+import progiso
+from progiso.cli import main
 
 
 def import_everything():
@@ -103,7 +104,12 @@ def use_vtk(image, folder):
     for extractor in (vtkFlyingEdges3D(), vtkContourFilter()):
         extractor.SetInputData(image)
         extractor.SetValue(0, 0.0)
-        normals, cells, surface, actor = vtkPolyDataNormals(), vtkGeometryFilter(), vtkPolyDataMapper(), vtkActor()
+        normals, cells, surface, actor = (
+            vtkPolyDataNormals(),
+            vtkGeometryFilter(),
+            vtkPolyDataMapper(),
+            vtkActor(),
+        )
         normals.SetInputConnection(extractor.GetOutputPort())
         cells.SetInputConnection(normals.GetOutputPort())
         surface.SetInputConnection(cells.GetOutputPort())

@@ -47,8 +47,12 @@ check_same(chosen, screenshot(view, "first_array.png"), tolerance=1)
 simple.Hide(second, view)
 
 # a component of a vector array
-vectors = simple.Calculator(Input=wavelet, ResultArrayName="vectors", Function="iHat + RTData*jHat + 2*RTData*kHat")
-display = show_isosurface(vectors, view, IsosurfaceArray=["POINTS", "vectors"], IsosurfaceComponent=2, Isovalues=[300.0])
+vectors = simple.Calculator(
+    Input=wavelet, ResultArrayName="vectors", Function="iHat + RTData*jHat + 2*RTData*kHat"
+)
+display = show_isosurface(
+    vectors, view, IsosurfaceArray=["POINTS", "vectors"], IsosurfaceComponent=2, Isovalues=[300.0]
+)
 check_same(chosen, screenshot(view, "component.png"), tolerance=1)
 
 finish(covered=covered(shown), range=values)

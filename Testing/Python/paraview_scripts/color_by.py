@@ -1,6 +1,16 @@
 """Another array gives the surface its colours, through its own colour map; the isosurface array gives one colour again."""
 
-from common import check_same, covered, finish, load_plugin, look, make_view, make_wavelet, screenshot, show_isosurface
+from common import (
+    check_same,
+    covered,
+    finish,
+    load_plugin,
+    look,
+    make_view,
+    make_wavelet,
+    screenshot,
+    show_isosurface,
+)
 from paraview import simple
 
 load_plugin()
@@ -21,12 +31,17 @@ coloured = screenshot(view, "color_by_right.png")
 assert covered(coloured) == covered(plain) > 0.1, "the same surface"
 seen = abs(coloured - coloured[0, 0]).max(axis=2) > 8
 width = coloured.shape[1]
-left, right = (coloured[:, half][seen[:, half]].mean(axis=0) for half in (slice(width // 2), slice(width // 2, width)))
+left, right = (
+    coloured[:, half][seen[:, half]].mean(axis=0)
+    for half in (slice(width // 2), slice(width // 2, width))
+)
 assert left[2] > 2 * left[0] and right[0] > 2 * right[2], (left, right)
 
 colours.RGBPoints = [-24.0, 0.0, 0.0, 1.0, 24.0, 0.0, 1.0, 0.0]
 other = screenshot(view, "color_by_other_map.png")
-assert other[:, width // 2 :, 1].mean() > 1.5 * coloured[:, width // 2 :, 1].mean(), "a change of the map shows"
+assert other[:, width // 2 :, 1].mean() > 1.5 * coloured[:, width // 2 :, 1].mean(), (
+    "a change of the map shows"
+)
 
 simple.ColorBy(display, ("POINTS", "RTData"))
 display.SetScalarBarVisibility(view, False)

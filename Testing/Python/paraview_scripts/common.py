@@ -80,7 +80,10 @@ def information(display):
         "processes": "NumberOfProcesses",
     }
     # vtkSMPropertyHelper reads them whatever Python makes of an information property
-    return {key: servermanager.vtkSMPropertyHelper(display.SMProxy, name).GetAsDouble() for key, name in names.items()}
+    return {
+        key: servermanager.vtkSMPropertyHelper(display.SMProxy, name).GetAsDouble()
+        for key, name in names.items()
+    }
 
 
 def check_converged(display):
@@ -120,12 +123,16 @@ def covered(pixels):
 def check_same(first, second, tolerance=0):
     """Two images agree to within `tolerance` grey levels in every pixel."""
     difference = int(abs(first - second).max())
-    assert difference <= tolerance, f"images differ by {difference} grey levels, {tolerance} allowed"
+    assert difference <= tolerance, (
+        f"images differ by {difference} grey levels, {tolerance} allowed"
+    )
 
 
 def check_close(actual, expected, what):
     """Two numbers agree to single precision."""
-    assert math.isclose(actual, expected, rel_tol=1e-6, abs_tol=1e-6), f"{what}: {actual} in place of {expected}"
+    assert math.isclose(actual, expected, rel_tol=1e-6, abs_tol=1e-6), (
+        f"{what}: {actual} in place of {expected}"
+    )
 
 
 def middle(values):

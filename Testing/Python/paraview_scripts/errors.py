@@ -1,6 +1,15 @@
 """Inputs that cannot be drawn: one error that says why, an empty image, and no crash."""
 
-from common import PROGRESSIVE_ISOSURFACE, covered, finish, load_plugin, make_view, make_wavelet, screenshot, show_isosurface
+from common import (
+    PROGRESSIVE_ISOSURFACE,
+    covered,
+    finish,
+    load_plugin,
+    make_view,
+    make_wavelet,
+    screenshot,
+    show_isosurface,
+)
 from paraview import simple
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 

@@ -27,7 +27,9 @@ camera.Azimuth(30)
 camera.Elevation(20)
 simple.ResetCamera(view)
 
-window = next(w for w in QtWidgets.QApplication.topLevelWidgets() if w.objectName() == "pqClientMainWindow")
+window = next(
+    w for w in QtWidgets.QApplication.topLevelWidgets() if w.objectName() == "pqClientMainWindow"
+)
 seen = []  # after each image: the representation's figures, and what the panel shows
 
 
@@ -35,7 +37,9 @@ def panel():
     """The widget that shows the statistics, and those in it by name."""
     (bar,) = window.findChildren(QtWidgets.QProgressBar, "Completed")
     widget = bar.parentWidget()
-    return widget, {w.objectName(): w for w in widget.findChildren(QtWidgets.QWidget) if w.objectName()}
+    return widget, {
+        w.objectName(): w for w in widget.findChildren(QtWidgets.QWidget) if w.objectName()
+    }
 
 
 def arrange():
@@ -74,7 +78,10 @@ def look_at_progress(*_):
             "image": shows["Image"].text(),
             "memory": shows["Memory"].text(),
             "rows": shows["Passes"].rowCount(),
-            "times": [float(shows["Passes"].item(row, 1).text()) for row in range(shows["Passes"].rowCount())],
+            "times": [
+                float(shows["Passes"].item(row, 1).text())
+                for row in range(shows["Passes"].rowCount())
+            ],
         }
     )
     if len(seen) == 3:

@@ -1,6 +1,17 @@
 """Holes: NaN where it is to be hidden, and blanked points, plain and compressed; an error where NaN is not."""
 
-from common import check_converged, check_same, covered, finish, load_plugin, look, make_view, make_wavelet, screenshot, show_isosurface
+from common import (
+    check_converged,
+    check_same,
+    covered,
+    finish,
+    load_plugin,
+    look,
+    make_view,
+    make_wavelet,
+    screenshot,
+    show_isosurface,
+)
 from paraview import simple
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 
@@ -29,7 +40,14 @@ blanked = simple.ProgrammableFilter(Input=wavelet, Script=HOLE + MARK)
 
 def shoot(source, name, **properties):
     """A picture of a source alone."""
-    display = show_isosurface(source, view, Isovalues=[150.0], DiffuseColor=[0.9, 0.85, 0.7], CompressionRate=12.0, **properties)
+    display = show_isosurface(
+        source,
+        view,
+        Isovalues=[150.0],
+        DiffuseColor=[0.9, 0.85, 0.7],
+        CompressionRate=12.0,
+        **properties,
+    )
     look(view)
     pixels = screenshot(view, name)
     check_converged(display)
@@ -41,7 +59,9 @@ whole = shoot(wavelet, "hidden_nothing.png")
 seen = shoot(spoiled, "hidden_nan.png", MaskNaN=1)
 assert 0 < covered(seen) and (abs(seen - whole).max(axis=2) > 8).mean() > 0.02
 check_same(seen, shoot(blanked, "hidden_points.png"))
-check_same(seen, shoot(simple.ZFPCompress(Input=spoiled, Rate=12, MaskNaN=1), "hidden_compressed.png"))
+check_same(
+    seen, shoot(simple.ZFPCompress(Input=spoiled, Rate=12, MaskNaN=1), "hidden_compressed.png")
+)
 check_same(seen, shoot(simple.ZFPCompress(Input=blanked, Rate=12), "hidden_compressed_points.png"))
 
 usual, listener = vtkOutputWindow.GetInstance(), vtkStringOutputWindow()

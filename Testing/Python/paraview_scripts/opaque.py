@@ -1,6 +1,16 @@
 """The isosurface among other geometry: it hides and is hidden by depth, and translucent geometry blends over it."""
 
-from common import check_same, covered, finish, load_plugin, look, make_view, make_wavelet, screenshot, show_isosurface
+from common import (
+    check_same,
+    covered,
+    finish,
+    load_plugin,
+    look,
+    make_view,
+    make_wavelet,
+    screenshot,
+    show_isosurface,
+)
 from paraview import simple
 
 load_plugin()

@@ -31,7 +31,9 @@ first = screenshot(view, "panel.png")
 
 def drawn_property(of=view):
     """The volume property that the mapper reads, whose only owner is the representation's prop."""
-    (prop,) = (p for p in of.GetRenderer().GetViewProps() if p.IsA("vtkPVLODVolume") and p.GetVisibility())
+    (prop,) = (
+        p for p in of.GetRenderer().GetViewProps() if p.IsA("vtkPVLODVolume") and p.GetVisibility()
+    )
     return prop.GetProperty()
 
 
@@ -67,7 +69,9 @@ check_same(first, screenshot(view, "panel_again.png"))
 display.Specular = 0.8
 broad = screenshot(view, "panel_broad.png")
 display.SpecularPower = 90.0
-assert (broad - screenshot(view, "panel_narrow.png")).mean() > 1.0, "highlights narrow with the power"
+assert (broad - screenshot(view, "panel_narrow.png")).mean() > 1.0, (
+    "highlights narrow with the power"
+)
 display.Specular, display.SpecularPower = 0.0, power
 
 # opacity: the solid one, and that of a colour map which maps opacities
@@ -75,11 +79,33 @@ display.Opacity = 0.25
 simple.Render(view)
 check_close(drawn_property().GetScalarOpacity().GetValue(150.0), 0.25, "opacity")
 faint = screenshot(view, "panel_faint.png")
-assert abs(faint - faint[0, 0]).mean() < 0.8 * abs(first - first[0, 0]).mean(), "the background is seen through it"
+assert abs(faint - faint[0, 0]).mean() < 0.8 * abs(first - first[0, 0]).mean(), (
+    "the background is seen through it"
+)
 simple.ColorBy(display, ("POINTS", "RTData"))
 display.SetScalarBarVisibility(view, False)
-colours, opacities = simple.GetColorTransferFunction("RTData"), simple.GetOpacityTransferFunction("RTData")
-opacities.Points = [low, 0.0, 0.5, 0.0, 100.0, 0.2, 0.5, 0.0, 200.0, 0.6, 0.5, 0.0, high, 1.0, 0.5, 0.0]
+colours, opacities = (
+    simple.GetColorTransferFunction("RTData"),
+    simple.GetOpacityTransferFunction("RTData"),
+)
+opacities.Points = [
+    low,
+    0.0,
+    0.5,
+    0.0,
+    100.0,
+    0.2,
+    0.5,
+    0.0,
+    200.0,
+    0.6,
+    0.5,
+    0.0,
+    high,
+    1.0,
+    0.5,
+    0.0,
+]
 colours.EnableOpacityMapping = 1
 simple.Render(view)
 check_close(drawn_property().GetScalarOpacity().GetValue(150.0), 0.25 * 0.4, "opacity by the map")
@@ -88,7 +114,11 @@ display.Opacity = 1.0
 simple.Render(view)
 check_close(drawn_property().GetScalarOpacity().GetValue(150.0), 1.0, "opaque again")
 red, green, blue = colours.RGBPoints[1:4]
-check_close(drawn_property().GetRGBTransferFunction().GetRedValue(colours.RGBPoints[0]), red, "colour of the map")
+check_close(
+    drawn_property().GetRGBTransferFunction().GetRedValue(colours.RGBPoints[0]),
+    red,
+    "colour of the map",
+)
 simple.ColorBy(display, None)
 check_same(first, screenshot(view, "panel_solid.png"))
 
@@ -102,7 +132,10 @@ assert stack.CanUndo()
 stack.Undo()
 proxies = servermanager.ProxyManager().SMProxyManager  # as ParaView's window does after both
 proxies.UpdateRegisteredProxies(1)
-assert list(display.Isovalues) == [150.0] and display.MemoryBudget == 0, (list(display.Isovalues), display.MemoryBudget)
+assert list(display.Isovalues) == [150.0] and display.MemoryBudget == 0, (
+    list(display.Isovalues),
+    display.MemoryBudget,
+)
 check_same(first, screenshot(view, "panel_undone.png"))
 stack.Redo()
 proxies.UpdateRegisteredProxies(1)

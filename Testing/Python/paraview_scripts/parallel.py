@@ -3,7 +3,16 @@
 import math
 
 import numpy
-from common import BUILD, OUTPUT, finish, load_plugin, make_view, middle, screenshot, show_isosurface
+from common import (
+    BUILD,
+    OUTPUT,
+    finish,
+    load_plugin,
+    make_view,
+    middle,
+    screenshot,
+    show_isosurface,
+)
 from paraview import servermanager, simple
 
 assert BUILD.is_dir()
@@ -32,7 +41,9 @@ processes = servermanager.ActiveConnection.GetNumberOfDataPartitions()
 
 compressed = simple.ZFPCompress(Input=wavelet, Rate=4)
 first = list(show_isosurface(compressed, view).Isovalues)
-assert math.isclose(first[0], middle(wavelet.PointData["RTData"].GetRange()), rel_tol=1e-6), "range of all pieces"
+assert math.isclose(first[0], middle(wavelet.PointData["RTData"].GetRange()), rel_tol=1e-6), (
+    "range of all pieces"
+)
 shoot(compressed, "compressed")
 decompressed = simple.ZFPDecompress(Input=compressed)
 shoot(decompressed, "decompressed", CompressionRate=16)

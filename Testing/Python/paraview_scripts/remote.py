@@ -42,8 +42,19 @@ def free_port():
 
 def start_server(port):
     """Start the server's processes. MPI has this script for one that it started, which they must not inherit."""
-    environment = {k: v for k, v in os.environ.items() if "ALLOW_RUN" in k or not k.startswith(("OMPI_", "PMIX_"))}
-    command = ["mpiexec", "--oversubscribe", "-n", str(PROCESSES), "pvserver", f"--server-port={port}"]
+    environment = {
+        k: v
+        for k, v in os.environ.items()
+        if "ALLOW_RUN" in k or not k.startswith(("OMPI_", "PMIX_"))
+    }
+    command = [
+        "mpiexec",
+        "--oversubscribe",
+        "-n",
+        str(PROCESSES),
+        "pvserver",
+        f"--server-port={port}",
+    ]
     return subprocess.Popen(command, env=environment)
 
 

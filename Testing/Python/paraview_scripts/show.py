@@ -18,14 +18,25 @@ facts = {}
 
 
 def look(position, focal, up=(0, 1, 0)):
-    view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp, view.CameraViewAngle = position, focal, up, 30
+    view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp, view.CameraViewAngle = (
+        position,
+        focal,
+        up,
+        30,
+    )
 
 
 def shoot(name, display):
     """Take a screenshot and note the representation's figures."""
     SaveScreenshot(f"{folder}/{name}.png", view, ImageResolution=[300, 300])
     display.SMProxy.UpdatePropertyInformation()
-    keys = ("NumberOfPasses", "CompletedFraction", "TotalMilliseconds", "GPUBytes", "CompressedBytes")
+    keys = (
+        "NumberOfPasses",
+        "CompletedFraction",
+        "TotalMilliseconds",
+        "GPUBytes",
+        "CompressedBytes",
+    )
     facts[name] = {key: list(display.GetProperty(key))[0] for key in keys}
 
 
@@ -46,7 +57,9 @@ shoot("paraview-plain", plain)
 
 # The same compressed first: the same picture.
 compressed = ZFPCompress(Input=wavelet, Rate=8)
-packed = iso(Show(compressed, view), 150)  # without arrays its colour is solid (ColorBy(…, None) fails on such data in ParaView 5.11)
+packed = iso(
+    Show(compressed, view), 150
+)  # without arrays its colour is solid (ColorBy(…, None) fails on such data in ParaView 5.11)
 Hide(wavelet, view)
 shoot("paraview-compressed", packed)
 assert "Progressive Isosurface" in packed.GetProperty("Representation").Available

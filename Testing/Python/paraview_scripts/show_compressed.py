@@ -41,7 +41,9 @@ assert 0.1 < covered(shown) < 0.9, covered(shown)
 
 # the plain image compressed to the same rate looks the same
 simple.Hide(compressed, view)
-plain = show_isosurface(wavelet, view, Isovalues=[150.0], CompressionRate=12.0, DiffuseColor=[0.9, 0.85, 0.7])
+plain = show_isosurface(
+    wavelet, view, Isovalues=[150.0], CompressionRate=12.0, DiffuseColor=[0.9, 0.85, 0.7]
+)
 check_same(shown, screenshot(view, "compressed_plain.png"))
 simple.Hide(wavelet, view)
 

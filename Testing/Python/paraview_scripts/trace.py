@@ -24,7 +24,9 @@ class Recorded:
         self.proxy = proxy
 
     def __enter__(self):
-        self.item = smtrace._create_trace_item_internal("PropertiesModified", kwargs={"proxy": self.proxy.SMProxy})
+        self.item = smtrace._create_trace_item_internal(
+            "PropertiesModified", kwargs={"proxy": self.proxy.SMProxy}
+        )
 
     def __exit__(self, *_):
         self.item.finalize()
@@ -58,7 +60,13 @@ recorded = smtrace.stop_trace()
 shown = screenshot(view, "trace_shown.png")
 assert covered(shown) > 0.1
 
-for fact in ("Isovalues = [150.0]", "MemoryBudget = 100", "Speculation = 0", "Rate = 6.0", PROGRESSIVE_ISOSURFACE):
+for fact in (
+    "Isovalues = [150.0]",
+    "MemoryBudget = 100",
+    "Speculation = 0",
+    "Rate = 6.0",
+    PROGRESSIVE_ISOSURFACE,
+):
     assert fact in recorded, (fact, recorded)
 state = smstate.get_state()
 (OUTPUT / "trace_state.py").write_text(state)

@@ -44,7 +44,9 @@ simple.Hide(zfp, view)
 # without header the reader must be told
 path = str(OUTPUT / "headerless.zfp")
 simple.SaveData(path, compressed, WriteHeader=0)
-bare = simple.ZFPReader(FileName=path, DataDimensions=[49, 49, 49], Rate=8, DataOrigin=[-24.0, -24.0, -24.0])
+bare = simple.ZFPReader(
+    FileName=path, DataDimensions=[49, 49, 49], Rate=8, DataOrigin=[-24.0, -24.0, -24.0]
+)
 show_isosurface(bare, view, **look_at)
 check_same(direct, screenshot(view, "files_headerless.png"))
 

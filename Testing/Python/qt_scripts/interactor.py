@@ -10,10 +10,11 @@ import numpy as np
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent.parent), str(HERE.parent)]
 
-import progiso  # noqa: E402
 from pyvistaqt import QtInteractor  # noqa: E402
 from qtpy import QtCore, QtWidgets  # noqa: E402
 from support import blobs, make_image  # noqa: E402
+
+import progiso  # noqa: E402
 
 FIRST_IMAGES = 5  # the mapper may complete a new window's first ones at once
 PATIENCE = 120000  # milliseconds; an image that never completes has failed
@@ -71,4 +72,14 @@ same = np.array_equal(refined, progiso.depth(mapper))
 hits = int(np.isfinite(refined).sum())
 errors = mapper.GetNumberOfGLErrors()
 plotter.close()
-print(json.dumps({"images": images[:before], "at_once": at_once, "same": same, "hits": hits, "errors": errors}))
+print(
+    json.dumps(
+        {
+            "images": images[:before],
+            "at_once": at_once,
+            "same": same,
+            "hits": hits,
+            "errors": errors,
+        }
+    )
+)
