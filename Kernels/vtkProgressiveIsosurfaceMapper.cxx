@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkProgressiveIsosurfaceMapper.h"
 
-#include "CompressedInput.h"
-#include "ProgressivePipeline.h"
-#include "SceneTranslation.h"
+#include "Scene/CompressedInput.h"
+#include "Pipeline/ProgressivePipeline.h"
+#include "Scene/SceneTranslation.h"
 #include "vtkProgressiveIsosurfaceStatistics.h"
 
 #include "vtkCamera.h"
@@ -695,7 +695,7 @@ void vtkProgressiveIsosurfaceMapper::Internals::FillStatistics()
         ->SetValue(static_cast<vtkIdType>(i), row[column]);
     }
   }
-  PipelineResources& resources = this->Pipeline.GetResources();
+  Device& resources = this->Pipeline.GetResources();
   statistics->Buffers.clear();
   for (const BufferInfo& info : PipelineBuffers())
   {
@@ -728,7 +728,7 @@ void vtkProgressiveIsosurfaceMapper::Internals::FillStatistics()
   statistics->LeastMemoryBudget = this->Pipeline.GetLeastMemoryBudget();
   statistics->TotalMilliseconds = this->TotalMilliseconds;
   statistics->Converged = this->Pipeline.GetConverged();
-  statistics->GLDescription = PipelineResources::GetDescription();
+  statistics->GLDescription = Device::GetDescription();
   statistics->Modified();
 }
 

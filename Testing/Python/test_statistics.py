@@ -177,7 +177,7 @@ def test_a_small_volume_needs_no_cache(volume):
         "BlockRanges",
         "PlanPass",
         "CastRays",
-        "FindNormals",
+        "FinishHits",
         "Composite",
     }
 
@@ -200,7 +200,7 @@ def test_an_unlit_surface_needs_no_normals(volume, settings):
     plain, other_stages = needs(volume, lit=False, **settings)
     assert lit["normals"] == 4 * PIXELS and "normals" not in plain
     assert sum(lit.values()) - sum(plain.values()) >= 4 * PIXELS
-    assert stages - other_stages == {"FindNormals"} and other_stages < stages
+    assert stages - other_stages == {"FinishHits"} and other_stages < stages
 
 
 def test_speculation_takes_no_memory(volume):

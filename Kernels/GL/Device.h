@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+// The OpenGL objects of a pipeline in the current context: buffers by their names in
+// BufferTable.h, programs by their names in StageTable.h, and how they come together in a
+// dispatch. Knows nothing of the algorithm.
+#ifndef PipelineResources_h
+#define PipelineResources_h
+
+#include "Shaders/BufferTable.h"
+#include "GL/ProgramCache.h"
+#include "Shaders/StageTable.h"
+#include "GL/ProgIsoGL.h"
+#include "Shaders/SceneBlock.h"
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+/// A part of the payload that a buffer of its own holds: whole layers of macrocells, and the layer
+/// of blocks that the last of them reach into.
+struct PayloadSegment
+{
+  std::int64_t FirstByte = 0; ///< of the stream, a multiple of 4
+  std::int64_t Bytes = 0;
+  std::uint32_t FirstBlock = 0, Blocks = 0; ///< that are decoded from here
+  std::uint32_t FirstBit = 0;               ///< of the first block, 0 … 31
+  std::uint32_t FirstMacrocell = 0, Macrocells = 0;
+};
+
+/// What the GPU tells the CPU after a pass.
+struct Snapshot
+{
+  ControlBlock Control;
+  PassRecord Records[PassRecords];
+};
+
+class Device
+{
+public:
+  Device() = default;
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+  Device& operator=(Device&&) = default;
+
+  /// Check the context, told by a number of its own, and make what is always there; false where it
+  /// cannot run the stages.
+  bool Initialize(std::uint64_t context);
+  bool IsInitialized() const { return this->SceneBuffer != 0; }
+  void Release();
+
+  ///@{ The first thing that went wrong since Release().
+  bool Fail(const std::string& message);
+  const std::string& GetError() const { return this->Error; }
+  ///@}
+
+  ///@{ Buffers. Allocate() makes those of a lifetime as an extent wants them, and frees those it
+  /// does not want. One that has the size already is kept, else its contents are undefined.
+  bool Allocate(Lifetime lifetime, const PipelineExtent& extent);
+  bool Has(Lifetime lifetime, const PipelineExtent& extent) const;
+  /// Free all that an extent wants in another size: the sum never exceeds what it will be.
+  void Trim(const PipelineExtent& extent);
+  void Free(Lifetime lifetime);
+  void Fill(Buffer buffer, std::uint32_t value);
+  std::int64_t GetBytes(Buffer buffer) const;
+  /// Did OpenGL run out of memory since it was asked last? Some drivers make it where it is used.
+  bool CheckMemory();
+  /// Bytes that traffic with the CPU takes now.
+  std::int64_t GetStagingBytes() const;
+  ///@}
+
+  /// Fill a buffer that the stages only read.
+  void Upload(Buffer buffer, const std::vector<std::uint32_t>& words);
+
+  ///@{ A compressed stream, in as many buffers as it takes: of Payload or of ColorPayload.
+  bool UploadPayload(
+    Buffer which, const unsigned char* stream, const std::vector<PayloadSegment>& segments);
+  void FreePayloads();
+  ///@}
+
+  ///@{ Traffic with the CPU. It waits for the GPU only where it reads.
+  void Read(Buffer buffer, std::int64_t offset, void* data, std::int64_t bytes);
+  void Write(Buffer buffer, std::size_t offset, const void* data, std::size_t bytes);
+  void UploadScene(const SceneBlock& scene);
+  /// Colours over a range, see Shading.glsl; none: nothing is left of it.
+  void UploadPalette(const std::vector<float>& palette);
+  std::int64_t GetPaletteBytes() const { return this->PaletteBytes; }
+  /// Copy the depths of a part of the current framebuffer (width, height, origin) into a buffer.
+  void CaptureDepths(const std::int32_t image[4], Buffer buffer, std::int64_t offset);
+  ///@}
+
+  ///@{ Snapshots are ordered now and arrive in that order, without anyone waiting in between.
+  void OrderSnapshot();
+  int GetOrderedSnapshots() const { return static_cast<int>(this->Ordered.size()); }
+  Snapshot AwaitSnapshot();
+  void ForgetSnapshots();
+  ///@}
+
+  ///@{ Where nothing has gone wrong, run a stage on so many work groups, or on as many as the
+  /// control block says at an offset; a
+  /// stage that reads the payload once for each of its segments.
+  void Dispatch(Stage stage, std::int64_t groups);
+  void DispatchIndirect(Stage stage, std::size_t controlOffset);
+  ///@}
+  /// Draw the viewport with a stage that does, and leave no binding behind.
+  void Draw(Stage stage, const std::array<float, 4>* selected = nullptr);
+
+  /// What the scene needs; it chooses the variants of the stages.
+  void SetExtent(const PipelineExtent& extent) { this->Extent = extent; }
+
+  ///@{ Stages that have run since they were forgotten, and with detailed statistics their
+  /// milliseconds.
+  const std::set<Stage>& GetStagesRun() const { return this->StagesRun; }
+  void ForgetStages(const std::set<Stage>& except = {});
+  std::map<Stage, double> GetStageMilliseconds();
+  ///@}
+
+  bool IsSoftware() const { return this->Software; }
+  ///@{ Bytes that one storage buffer may have: what OpenGL allows here, or less (0: no less).
+  void LimitBuffers(std::int64_t bytes);
+  std::int64_t GetLargestBuffer() const { return this->LargestBuffer; }
+  ///@}
+  /// Bytes of graphics memory that this GPU reports; 0 where it does not tell.
+  std::int64_t GetDeviceMemory() const { return this->DeviceMemory; }
+  /// Of the context, as long as this is initialized.
+  int GetNumberOfGLErrors() const
+  {
+    return this->Programs ? this->Programs->GLErrors : this->GLErrors;
+  }
+  static std::string GetDescription();
+
+  /// Bytes that Read(), Write() and snapshots take at most.
+  static std::int64_t GetStagingLimit();
+
+private:
+  struct Order
+  {
+    GLuint Buffer;
+    GLsync Fence;
+  };
+  struct Timing
+  {
+    Stage Id;
+    GLuint Begin, End;
+  };
+
+  struct PayloadBuffers
+  {
+    std::vector<GLuint> Names;
+    std::vector<PayloadSegment> Segments;
+  };
+
+  bool CheckContext();
+  void AskLimits();
+  bool Allocate(Buffer buffer, std::int64_t bytes);
+  bool MakeBuffer(GLuint& name, std::int64_t bytes, std::int64_t largestPlain, const char* what);
+  void Free(Buffer buffer);
+  const PayloadBuffers* PayloadOf(Stage stage) const;
+  bool Bind(Stage stage, GLuint payload, const PayloadSegment* segment);
+  template <typename Launch>
+  void Run(Stage stage, const Launch& launch);
+  void BeginTiming(Stage stage);
+  void EndTiming(Stage stage);
+
+  std::array<GLuint, NumberOfBuffers> Names = {};
+  std::array<std::int64_t, NumberOfBuffers> Bytes = {};
+  std::map<Buffer, PayloadBuffers> Payloads;
+  std::shared_ptr<ProgramCache> Programs;
+  PipelineExtent Extent;
+
+  GLuint SceneBuffer = 0;
+  GLuint PaletteBuffer = 0;
+  std::int64_t PaletteBytes = 0;
+  GLuint Staging = 0; ///< what the CPU reads and writes passes through it
+  std::int64_t StagingBytes = 0;
+  std::deque<Order> Ordered; ///< snapshots under way, oldest first
+  std::vector<GLuint> SpareSnapshots;
+  GLuint VertexArray = 0;
+
+  bool Software = false;     ///< no GPU: Mesa's llvmpipe
+  bool ByExtensions = false; ///< the context is older than 4.3 but offers what we need
+  std::int64_t LargestAllowed = 0;
+  std::int64_t LargestBuffer = 0;
+  std::int64_t DeviceMemory = 0;
+  bool OffersSparse = false; ///< buffers that are committed page by page
+  bool CountsErrors = false;
+  int GLErrors = 0; ///< until the last Release()
+  std::set<Stage> StagesRun;
+  std::vector<Timing> Timings; ///< not yet added up
+  std::map<Stage, double> StageMilliseconds;
+  double TimingStart = 0.0; ///< software renderers: wall clock
+  std::string Error;
+};
+
+#endif

@@ -1,0 +1,699 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Pipeline/ProgressivePipeline.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <limits>
+
+namespace
+{
+constexpr std::int64_t AutomaticValues = 1LL
+  << 30; // bytes of decoded blocks where no budget is set
+constexpr std::int64_t PaletteBytes = 16 * (1 + 256);
+constexpr std::int64_t LeastSlots = 2048; // any 64 rays find room for all that they need at once
+constexpr std::int64_t LeastPages = 512;  // of the block map, likewise
+constexpr std::int64_t SlotsPerPage = 8;  // else
+constexpr std::int64_t FirstSlots = 16384;
+constexpr std::int64_t Growth = 4;   // of the cache, at least
+constexpr int MostRefusals = 3;      // in a row, of a cache that has a slot for every pixel
+constexpr int PassesAhead = 3;       // submitted before the CPU knows whether they are needed
+constexpr int PatienceWithNone = 64; // passes that get nowhere before we give up
+constexpr std::size_t RecentImages = 8;
+constexpr std::uint32_t FewRays = 32; // as many pixels a ray, or more: each gets a work group
+constexpr std::uint32_t PixelsPerBlockAhead = 4;
+
+std::int64_t DivideUp(std::int64_t a, std::int64_t b)
+{
+  return (a + b - 1) / b;
+}
+
+std::string Bytes(std::int64_t bytes)
+{
+  return std::to_string(bytes) + " bytes";
+}
+}
+
+bool ProgressivePipeline::Initialize(std::uint64_t context)
+{
+  if (this->Gpu.IsInitialized())
+  {
+    return true;
+  }
+  if (!this->Gpu.Initialize(context) || !this->Gpu.Allocate(Lifetime::Pipeline, this->Extent))
+  {
+    return false;
+  }
+  ControlBlock control = {};
+  for (DispatchArguments* groups : { &control.CastGroups, &control.FewGroups, &control.NormalGroups,
+         &control.RequestGroups, &control.DecodeGroups, &control.EvictGroups })
+  {
+    *groups = { 0, 1, 1, 0 };
+  }
+  this->Gpu.Write(Buffer::Control, 0, &control, sizeof(control));
+  return this->Gpu.CheckMemory();
+}
+
+void ProgressivePipeline::Release()
+{
+  glDeleteQueries(static_cast<GLsizei>(this->TimeQueries.size()), this->TimeQueries.data());
+  this->TimeQueries.clear();
+  this->Gpu.Release();
+  this->Extent = PipelineExtent();
+  this->VolumeLoaded = false;
+  this->Started = false;
+}
+
+//------------------------------------------------------------------------------
+// What there is room for
+//------------------------------------------------------------------------------
+// All GPU memory beside the compressed stream.
+std::int64_t ProgressivePipeline::BytesWith(const PipelineExtent& extent) const
+{
+  std::int64_t bytes = static_cast<std::int64_t>(sizeof(SceneBlock)) +
+    Device::GetStagingLimit() + (extent.Colored ? PaletteBytes : 0);
+  for (Lifetime lifetime :
+    { Lifetime::Pipeline, Lifetime::Volume, Lifetime::Image, Lifetime::Cache })
+  {
+    bytes += BytesOf(lifetime, extent);
+  }
+  return bytes;
+}
+
+PipelineExtent ProgressivePipeline::WithSlots(std::int64_t slots) const
+{
+  PipelineExtent extent = this->Extent;
+  extent.Cached = true;
+  extent.Slots = slots;
+  extent.Pages = std::min(extent.CoarseCells, std::max(LeastPages, slots / SlotsPerPage));
+  return extent;
+}
+
+PipelineExtent ProgressivePipeline::WholeVolume() const
+{
+  PipelineExtent extent = this->Extent;
+  extent.Cached = false;
+  extent.Slots = this->Scene.Blocks[3];
+  extent.Pages = 0;
+  return extent;
+}
+
+// Automatic: a quarter of what the GPU has, but not more than the decoded blocks are given by
+// default.
+std::int64_t ProgressivePipeline::ChooseBudget() const
+{
+  if (this->Settings.MemoryBudget > 0)
+  {
+    return this->Settings.MemoryBudget;
+  }
+  const std::int64_t most = this->BytesWith(this->WithSlots(0)) + AutomaticValues;
+  const std::int64_t device = this->Gpu.GetDeviceMemory();
+  return device > 0 ? std::min(most, device / 4) : most;
+}
+
+std::int64_t ProgressivePipeline::MinimumSlots() const
+{
+  return std::min<std::int64_t>(LeastSlots, this->Scene.Blocks[3]);
+}
+
+// As many as the budget has room for, one buffer can hold and the volume has blocks; 0 where the
+// budget has no room for the fewest that can work.
+std::int64_t ProgressivePipeline::MaximumSlots() const
+{
+  std::int64_t least = 0;
+  std::int64_t most = std::min<std::int64_t>(
+    this->Scene.Blocks[3], this->Gpu.GetLargestBuffer() / BytesPerSlot(this->Extent));
+  while (least < most)
+  {
+    const std::int64_t middle = DivideUp(least + most, 2);
+    if (this->BytesWith(this->WithSlots(middle)) <= this->Budget)
+    {
+      least = middle;
+    }
+    else
+    {
+      most = middle - 1;
+    }
+  }
+  return least >= this->MinimumSlots() ? least : 0;
+}
+
+std::int64_t ProgressivePipeline::GetLeastMemoryBudget() const
+{
+  const std::int64_t cached = this->BytesWith(this->WithSlots(this->MinimumSlots()));
+  return this->Settings.DecodeWholeVolume ? std::min(cached, this->BytesWith(this->WholeVolume()))
+                                          : cached;
+}
+
+//------------------------------------------------------------------------------
+// The volume
+//------------------------------------------------------------------------------
+void ProgressivePipeline::SetVolume(const PipelineVolume& volume)
+{
+  this->Volume = volume;
+  this->VolumeLoaded = false;
+  this->Started = false;
+  std::int64_t blocks = 1, coarseCells = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->Scene.Samples[axis] = volume.Samples[axis];
+    this->Scene.Blocks[axis] = static_cast<std::int32_t>(DivideUp(volume.Samples[axis], 4));
+    this->Scene.CoarseCells[axis] = static_cast<std::int32_t>(DivideUp(volume.Samples[axis], 16));
+    blocks *= this->Scene.Blocks[axis];
+    coarseCells *= this->Scene.CoarseCells[axis];
+  }
+  this->Scene.Samples[3] = volume.Values.BlockBits;
+  this->Scene.Blocks[3] = static_cast<std::int32_t>(blocks);
+  this->Scene.CoarseCells[3] = static_cast<std::int32_t>(coarseCells);
+  this->Extent.CoarseCells = coarseCells;
+  this->Extent.Colored = volume.Colors.Data != nullptr;
+  this->Extent.HiddenWords = static_cast<std::int64_t>(volume.Hidden.size());
+  this->TouchedSlots.clear();
+}
+
+void ProgressivePipeline::EmptyCache()
+{
+  if (!this->Extent.Cached)
+  {
+    this->VolumeLoaded = false;
+  }
+  else if (this->Extent.Slots > 0)
+  {
+    this->ResizeCache(this->Extent.Slots);
+  }
+  this->Started = false;
+}
+
+void ProgressivePipeline::SetSettings(const PipelineSettings& settings)
+{
+  if (settings.LargestBuffer != this->Settings.LargestBuffer)
+  {
+    this->VolumeLoaded = false;
+  }
+  this->Settings = settings;
+  this->Gpu.LimitBuffers(settings.LargestBuffer);
+}
+
+// As few segments as the largest buffer allows, of whole layers of macrocells.
+bool ProgressivePipeline::SplitPayload(
+  const CompressedStream& stream, std::vector<PayloadSegment>& segments)
+{
+  const std::int64_t largest =
+    std::min(this->Gpu.GetLargestBuffer(), static_cast<std::int64_t>(1) << 33);
+  const std::int64_t layerBlocks =
+    static_cast<std::int64_t>(this->Scene.Blocks[0]) * this->Scene.Blocks[1];
+  const std::int64_t layerCells =
+    static_cast<std::int64_t>(this->Scene.CoarseCells[0]) * this->Scene.CoarseCells[1];
+  const std::int64_t bits = stream.BlockBits;
+  // one more layer of blocks, which the last macrocells reach into, and a word for the first bits
+  const std::int64_t layers = (8 * (largest - 8) / (layerBlocks * bits) - 1) / 4;
+  if (layers < 1)
+  {
+    return this->Gpu.Fail("five layers of the compressed volume's blocks have " +
+      Bytes(DivideUp(5 * layerBlocks * bits, 8)) + ", more than one GPU buffer can hold (" +
+      Bytes(largest) + "): lower the rate");
+  }
+  for (std::int64_t first = 0; first < this->Scene.CoarseCells[2]; first += layers)
+  {
+    const std::int64_t last = std::min<std::int64_t>(first + layers, this->Scene.CoarseCells[2]);
+    const std::int64_t begin = 4 * first * layerBlocks;
+    const std::int64_t end = std::min<std::int64_t>(4 * last * layerBlocks, this->Scene.Blocks[3]);
+    const std::int64_t held = std::min<std::int64_t>(end + layerBlocks, this->Scene.Blocks[3]);
+    PayloadSegment segment;
+    segment.FirstByte = begin * bits / 32 * 4;
+    segment.Bytes = std::min(DivideUp(held * bits, 32) * 4, stream.Size) - segment.FirstByte;
+    segment.FirstBlock = static_cast<std::uint32_t>(begin);
+    segment.Blocks = static_cast<std::uint32_t>(end - begin);
+    segment.FirstBit = static_cast<std::uint32_t>(begin * bits % 32);
+    segment.FirstMacrocell = static_cast<std::uint32_t>(first * layerCells);
+    segment.Macrocells = static_cast<std::uint32_t>((last - first) * layerCells);
+    segments.push_back(segment);
+  }
+  return true;
+}
+
+bool ProgressivePipeline::UploadStreams()
+{
+  this->Gpu.FreePayloads();
+  std::vector<PayloadSegment> segments;
+  if (!this->SplitPayload(this->Volume.Values, segments) ||
+    !this->Gpu.UploadPayload(Buffer::Payload, this->Volume.Values.Data, segments))
+  {
+    return false;
+  }
+  if (!this->Extent.Colored)
+  {
+    return true;
+  }
+  segments.clear();
+  return this->SplitPayload(this->Volume.Colors, segments) &&
+    this->Gpu.UploadPayload(Buffer::ColorPayload, this->Volume.Colors.Data, segments);
+}
+
+bool ProgressivePipeline::MakeVolumeBuffers()
+{
+  if (!this->Gpu.Allocate(Lifetime::Volume, this->Extent))
+  {
+    return false;
+  }
+  this->Gpu.Upload(Buffer::HiddenCells, this->Volume.Hidden);
+  return true;
+}
+
+// The stream goes to the GPU and stays there; its macrocells are made (section 3.1).
+bool ProgressivePipeline::LoadVolume()
+{
+  if (!this->MakeVolumeBuffers() || !this->UploadStreams())
+  {
+    return false;
+  }
+  this->Gpu.Dispatch(Stage::BlockRanges, this->Extent.CoarseCells);
+  return true;
+}
+
+// The stream goes to the GPU, is decoded, and goes again.
+bool ProgressivePipeline::LoadWholeVolume()
+{
+  if (!this->MakeVolumeBuffers() || !this->Gpu.Allocate(Lifetime::Cache, this->Extent) ||
+    !this->UploadStreams())
+  {
+    return false;
+  }
+  this->Gpu.Dispatch(Stage::DecodeBlocks, DivideUp(this->Extent.Slots, 32));
+  if (this->Extent.Colored)
+  {
+    this->Gpu.Dispatch(Stage::DecodeColors, DivideUp(this->Extent.Slots, 32));
+  }
+  this->Gpu.FreePayloads();
+  this->Gpu.Dispatch(Stage::BlockRanges, this->Extent.CoarseCells);
+  return true;
+}
+
+//------------------------------------------------------------------------------
+// The cache
+//------------------------------------------------------------------------------
+// A new cache, which holds nothing yet.
+bool ProgressivePipeline::ResizeCache(std::int64_t slots)
+{
+  this->Extent = this->WithSlots(slots);
+  this->Gpu.SetExtent(this->Extent);
+  if (!this->Gpu.Allocate(Lifetime::Cache, this->Extent))
+  {
+    this->Gpu.Free(Lifetime::Cache);
+    this->Extent.Slots = 0;
+    return false;
+  }
+  this->Scene.Cache[0] = static_cast<std::uint32_t>(slots);
+  this->Scene.Cache[1] = static_cast<std::uint32_t>(this->Extent.Pages);
+  this->Scene.Cache[3] = slots == this->MaximumSlots() ? 1 : 0;
+  this->Gpu.UploadScene(this->Scene);
+  this->Gpu.Dispatch(Stage::CacheReset,
+    std::min<std::int64_t>(4096, DivideUp(std::max(slots, this->Extent.CoarseCells), 256)));
+  this->CacheAge = this->PassesSubmitted;
+  this->Refusals = 0;
+  this->TouchedSlots.clear();
+  return true;
+}
+
+// Where an image needs more than fits, and there is room, the cache grows: seldom and by much, as
+// GPUs take long to make memory. Beyond a slot a pixel it does so, then twofold, only where pass
+// after pass is refused blocks: up to then eviction helps, and another pass costs less than memory.
+// It loses what it holds; rays ask again for what they still need.
+void ProgressivePipeline::GrowCache(const PassRecord& pass)
+{
+  const std::int64_t most = this->MaximumSlots();
+  const std::int64_t needed = std::int64_t(pass.TouchedSlots) + pass.RefusedBlocks;
+  const bool small = this->Extent.Slots < this->Extent.Pixels && needed > this->Extent.Slots;
+  this->Refusals = pass.RefusedBlocks > 0 ? this->Refusals + 1 : 0;
+  if (this->Refusals > (small ? 0 : MostRefusals) && this->Extent.Slots < most)
+  {
+    const std::int64_t enough =
+      small ? std::max(Growth * this->Extent.Slots, 2 * needed) : 2 * this->Extent.Slots;
+    this->ResizeCache(std::min(enough, most));
+  }
+}
+
+// A cache that the last images left mostly unused shrinks: to less than it has ever grown at once.
+std::int64_t ProgressivePipeline::SlotsForRecentImages() const
+{
+  if (this->TouchedSlots.size() < RecentImages)
+  {
+    return this->Extent.Slots;
+  }
+  const std::int64_t most = *std::max_element(this->TouchedSlots.begin(), this->TouchedSlots.end());
+  const std::int64_t enough = std::max({ 2 * most, FirstSlots, this->MinimumSlots() });
+  return Growth * most < this->Extent.Slots ? std::min(enough, this->Extent.Slots)
+                                            : this->Extent.Slots;
+}
+
+//------------------------------------------------------------------------------
+// The scene
+//------------------------------------------------------------------------------
+void ProgressivePipeline::FillInScene(const SceneBlock& scene)
+{
+  const SceneBlock own = this->Scene;
+  this->Scene = scene;
+  std::copy(own.Samples, own.Samples + 4, this->Scene.Samples);
+  std::copy(own.Blocks, own.Blocks + 4, this->Scene.Blocks);
+  std::copy(own.CoarseCells, own.CoarseCells + 4, this->Scene.CoarseCells);
+  std::copy(own.Cache, own.Cache + 4, this->Scene.Cache);
+  this->Scene.Surface[3] = this->Volume.Colors.BlockBits;
+  this->Scene.Cache[2] = static_cast<std::uint32_t>(this->Settings.SpeculationLimit);
+  // a software renderer has no lanes to keep busy, and its work groups cost much
+  this->Scene.Policy[0] = this->Gpu.IsSoftware() ? 0 : FewRays;
+  this->Scene.Policy[1] = PixelsPerBlockAhead;
+}
+
+bool ProgressivePipeline::SetScene(const SceneBlock& scene, bool newImage)
+{
+  this->FillInScene(scene);
+  const PipelineExtent before = this->Extent;
+  this->Extent.Pixels = static_cast<std::int64_t>(scene.Image[0]) * scene.Image[1];
+  this->Extent.Detailed = this->Settings.Detailed;
+  this->Extent.Lit = scene.Lighting[0] > 0;
+  this->Extent.Translucent = scene.Lighting[1] > 0;
+  this->Extent.Obstructed = scene.Lighting[2] > 0;
+  this->Extent.SeveralIsovalues = scene.Surface[0] > 1;
+  this->Extent.Clipped = scene.Surface[1] > 0;
+  this->Extent.Cropped = scene.Surface[2] != SceneBlock::AllRegions;
+  const bool sameImage =
+    before.Pixels == this->Extent.Pixels && before.GetFeatures() == this->Extent.GetFeatures();
+  this->Started = this->Started && sameImage;
+  return this->MakeRoom(newImage);
+}
+
+// Decides between the whole volume, decoded, and a cache; has each buffer made as large as the
+// budget allows and the scene needs.
+bool ProgressivePipeline::MakeRoom(bool newImage)
+{
+  this->Budget = this->ChooseBudget();
+  const PipelineExtent whole = this->WholeVolume();
+  const bool fits = this->BytesWith(whole) <= this->Budget &&
+    BytesPerSlot(whole) * whole.Slots <= this->Gpu.GetLargestBuffer();
+  const bool cached = !(fits && this->Settings.DecodeWholeVolume);
+  const std::int64_t most = this->MaximumSlots();
+  if (cached && most == 0)
+  {
+    return this->Gpu.Fail("the memory budget of " + Bytes(this->Budget) +
+      " is too small: this volume at this image size needs at least " +
+      Bytes(this->GetLeastMemoryBudget()) + " beside the compressed stream");
+  }
+  const bool reload = !this->VolumeLoaded || cached != this->Extent.Cached;
+  std::int64_t slots = cached ? std::min(this->Extent.Slots, most) : whole.Slots;
+  if (reload)
+  {
+    this->Gpu.FreePayloads();
+    slots = cached ? 0 : whole.Slots;
+  }
+  this->Started = this->Started && slots == this->Extent.Slots && !reload;
+  this->Extent = cached ? this->WithSlots(slots) : whole;
+  this->Gpu.Trim(this->Extent);
+  this->Gpu.SetExtent(this->Extent);
+  this->Gpu.UploadScene(this->Scene);
+  if (reload)
+  {
+    this->Gpu.ForgetStages();
+    this->VolumeLoaded = cached ? this->LoadVolume() : this->LoadWholeVolume();
+  }
+  return this->GetError().empty() && this->Gpu.Allocate(Lifetime::Image, this->Extent) &&
+    (cached ? this->MakeCache(most, newImage) : this->Gpu.Allocate(Lifetime::Cache, this->Extent));
+}
+
+// The cache begins small, and is left alone while an image is under way.
+bool ProgressivePipeline::MakeCache(std::int64_t most, bool newImage)
+{
+  std::int64_t slots = this->Extent.Slots;
+  if (slots == 0)
+  {
+    slots = std::min(std::max(FirstSlots, this->Extent.Pixels / 4), most);
+  }
+  else if (newImage)
+  {
+    slots = this->SlotsForRecentImages();
+  }
+  const bool same = this->Gpu.Has(Lifetime::Cache, this->WithSlots(slots)) &&
+    this->Scene.Cache[3] == (slots == most ? 1u : 0u);
+  return same || this->ResizeCache(slots);
+}
+
+//------------------------------------------------------------------------------
+// The image
+//------------------------------------------------------------------------------
+void ProgressivePipeline::Start()
+{
+  this->Gpu.ForgetSnapshots();
+  this->Passes.clear();
+  this->PassEnds.clear();
+  this->PassesSubmitted = 0;
+  this->PassesKnown = 0;
+  this->CacheAge = 0;
+  this->PassesWithoutProgress = 0;
+  this->Remaining = this->Extent.Pixels;
+  this->Started = true;
+  std::set<Stage> forVolume = { Stage::BlockRanges };
+  if (!this->Extent.Cached)
+  {
+    forVolume.insert({ Stage::DecodeBlocks, Stage::DecodeColors });
+  }
+  this->Gpu.ForgetStages(forVolume);
+  this->StartTime = Clock::now();
+  if (!this->Gpu.IsSoftware())
+  {
+    this->MarkPassEnd(); // the first query is the image's start
+  }
+  this->Gpu.Fill(Buffer::Hits, 0xFFFFFFFFu);
+  this->Gpu.Fill(Buffer::Normals, 0x80008000u);
+  this->Gpu.Fill(Buffer::Layers, 0);
+  if (this->Extent.Obstructed)
+  {
+    const std::int64_t section = 2 + this->Extent.SeveralIsovalues + this->Extent.Colored;
+    this->Gpu.CaptureDepths(this->Scene.Image, Buffer::Hits, 4 * section * this->Extent.Pixels);
+  }
+  const std::uint32_t yes = 1;
+  this->Gpu.Write(Buffer::Control, offsetof(ControlBlock, NewImage), &yes, sizeof(yes));
+  if (this->Gpu.CheckMemory()) // else the stages may never come to an end
+  {
+    this->Gpu.Dispatch(Stage::PlanPass, 1);
+  }
+}
+
+// The algorithm. Every dispatch's size is decided on the GPU; see Buffers.glsl for what flows
+// between the stages. Where the whole volume is decoded one pass casts all rays to their ends.
+void ProgressivePipeline::RunPass()
+{
+  if (this->Extent.Cached && this->Extent.Slots < this->Scene.Blocks[3])
+  {
+    this->Gpu.DispatchIndirect(Stage::CacheAges, offsetof(ControlBlock, EvictGroups));
+    this->Gpu.DispatchIndirect(Stage::CacheEvict, offsetof(ControlBlock, EvictGroups));
+  }
+  this->Gpu.DispatchIndirect(Stage::CastRays, offsetof(ControlBlock, CastGroups));
+  if (!this->Extent.IsSinglePass())
+  {
+    this->Gpu.DispatchIndirect(Stage::CastFewRays, offsetof(ControlBlock, FewGroups));
+  }
+  if (this->Extent.Lit || this->Extent.Translucent || this->Extent.Colored)
+  {
+    this->Gpu.DispatchIndirect(Stage::FinishHits, offsetof(ControlBlock, NormalGroups));
+  }
+  if (this->Extent.Cached)
+  {
+    this->Gpu.DispatchIndirect(Stage::RequestBlocks, offsetof(ControlBlock, RequestGroups));
+    this->Gpu.DispatchIndirect(Stage::DecodeBlocks, offsetof(ControlBlock, DecodeGroups));
+  }
+  if (this->Extent.Cached && this->Extent.Colored)
+  {
+    this->Gpu.DispatchIndirect(Stage::DecodeColors, offsetof(ControlBlock, DecodeGroups));
+  }
+  this->Gpu.Dispatch(Stage::PlanPass, 1);
+  ++this->PassesSubmitted;
+  this->MarkPassEnd();
+  this->Gpu.OrderSnapshot();
+}
+
+// The GPU is always given work ahead of what the CPU knows; passes that turn out not to be needed
+// have no work groups.
+void ProgressivePipeline::RunPasses(int maximum, bool eager, const std::function<bool()>& stop)
+{
+  const std::int64_t ahead =
+    eager || this->Gpu.IsSoftware() || this->Extent.IsSinglePass() ? 1 : PassesAhead;
+  const std::int64_t last =
+    maximum > 0 ? this->PassesSubmitted + maximum : std::numeric_limits<std::int64_t>::max();
+  bool more = this->Remaining > 0 && this->GetError().empty();
+  while (more || this->PassesKnown < this->PassesSubmitted)
+  {
+    while (
+      more && this->PassesSubmitted < this->PassesKnown + ahead && this->PassesSubmitted < last)
+    {
+      this->RunPass();
+    }
+    if (this->Extent.IsSinglePass())
+    {
+      this->Remaining = 0; // there is nothing to wait for
+      return;
+    }
+    this->TakeSnapshot();
+    if (this->Remaining == 0 || !this->GetError().empty())
+    {
+      return;
+    }
+    more = more && !stop() && this->PassesSubmitted < last;
+    if (!this->Started) // whoever was asked has released everything
+    {
+      return;
+    }
+  }
+}
+
+// What the next pass of those submitted has done.
+void ProgressivePipeline::TakeSnapshot()
+{
+  const Snapshot snapshot = this->Gpu.AwaitSnapshot();
+  const std::size_t total = snapshot.Control.PassIndex;
+  ++this->PassesKnown;
+  if (this->Passes.size() < total)
+  {
+    TimedPass pass;
+    static_cast<PassRecord&>(pass) = snapshot.Records[(total - 1) % PassRecords];
+    const bool gotOn =
+      pass.Pairs > 0 || pass.DecodedBlocks > 0 || pass.RemainingRays != this->Remaining;
+    this->PassesWithoutProgress = gotOn ? 0 : this->PassesWithoutProgress + 1;
+    this->Remaining = pass.RemainingRays;
+    this->Passes.push_back(pass);
+    if (this->PassesKnown > this->CacheAge)
+    {
+      this->GrowCache(pass);
+    }
+  }
+  if (this->Remaining == 0)
+  {
+    this->EndImage();
+  }
+  if (this->PassesWithoutProgress == PatienceWithNone)
+  {
+    this->Gpu.Fail("makes no progress: the GPU may have been lost; release the graphics "
+                   "resources and render again");
+  }
+}
+
+void ProgressivePipeline::EndImage()
+{
+  this->Gpu.ForgetSnapshots(); // of passes that were not needed
+  this->PassesKnown = this->PassesSubmitted;
+  if (!this->Passes.empty())
+  {
+    this->TouchedSlots.push_back(this->Passes.back().TouchedSlots);
+  }
+  if (this->TouchedSlots.size() > RecentImages)
+  {
+    this->TouchedSlots.erase(this->TouchedSlots.begin());
+  }
+}
+
+//------------------------------------------------------------------------------
+// What came out
+//------------------------------------------------------------------------------
+double ProgressivePipeline::Since(Clock::time_point start) const
+{
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// Software renderers have no credible timer queries, but a synchronous end.
+void ProgressivePipeline::MarkPassEnd()
+{
+  if (this->Gpu.IsSoftware())
+  {
+    glFinish();
+    this->PassEnds.push_back(this->Since(this->StartTime));
+    return;
+  }
+  const std::size_t query = static_cast<std::size_t>(this->PassesSubmitted);
+  if (query >= this->TimeQueries.size())
+  {
+    this->TimeQueries.push_back(0);
+    glGenQueries(1, &this->TimeQueries.back());
+  }
+  glQueryCounter(this->TimeQueries[query], GL_TIMESTAMP);
+}
+
+void ProgressivePipeline::CompleteStatistics()
+{
+  while (this->PassesKnown < this->PassesSubmitted)
+  {
+    this->TakeSnapshot();
+  }
+  GLuint64 start = 0;
+  if (!this->Gpu.IsSoftware() && !this->Passes.empty())
+  {
+    glGetQueryObjectui64v(this->TimeQueries[0], GL_QUERY_RESULT, &start);
+  }
+  for (std::size_t i = 0; i < this->Passes.size(); ++i)
+  {
+    if (this->Gpu.IsSoftware())
+    {
+      this->Passes[i].ElapsedMilliseconds = this->PassEnds[i];
+      continue;
+    }
+    GLuint64 end = 0;
+    glGetQueryObjectui64v(this->TimeQueries[i + 1], GL_QUERY_RESULT, &end);
+    this->Passes[i].ElapsedMilliseconds = (end - start) * 1e-6;
+  }
+}
+
+double ProgressivePipeline::GetCompletedFraction() const
+{
+  return this->Started && this->Extent.Pixels > 0
+    ? 1.0 - static_cast<double>(this->Remaining) / static_cast<double>(this->Extent.Pixels)
+    : 0.0;
+}
+
+// One section of Hits.glsl.
+std::vector<std::uint32_t> ProgressivePipeline::ReadHits(std::int64_t section)
+{
+  std::vector<std::uint32_t> words(static_cast<std::size_t>(this->Extent.Pixels));
+  this->Gpu.Read(
+    Buffer::Hits, 4 * section * this->Extent.Pixels, words.data(), 4 * this->Extent.Pixels);
+  return words;
+}
+
+std::vector<std::uint32_t> ProgressivePipeline::ReadHitKeys()
+{
+  return this->ReadHits(0);
+}
+
+std::vector<float> ProgressivePipeline::ReadHitDepths()
+{
+  const std::vector<std::uint32_t> words = this->ReadHits(1);
+  std::vector<float> depths(words.size());
+  std::memcpy(depths.data(), words.data(), 4 * words.size());
+  return depths;
+}
+
+PixelHit ProgressivePipeline::ReadHit(std::int64_t pixel)
+{
+  PixelHit hit;
+  const auto read = [this, pixel](std::int64_t section, void* word)
+  { this->Gpu.Read(Buffer::Hits, 4 * (section * this->Extent.Pixels + pixel), word, 4); };
+  read(0, &hit.Key);
+  read(1, &hit.Depth);
+  if (this->Extent.SeveralIsovalues)
+  {
+    read(2, &hit.Surface);
+    hit.Surface >>= 16;
+  }
+  return hit;
+}
+
+bool ProgressivePipeline::DecodeVolume(std::vector<float>& values)
+{
+  this->Extent = this->WholeVolume();
+  this->Gpu.SetExtent(this->Extent);
+  this->Gpu.UploadScene(this->Scene);
+  if (!this->LoadWholeVolume())
+  {
+    return false;
+  }
+  values.resize(static_cast<std::size_t>(64 * this->Extent.Slots));
+  this->Gpu.Read(Buffer::CacheValues, 0, values.data(), 256 * this->Extent.Slots);
+  return this->GetError().empty();
+}

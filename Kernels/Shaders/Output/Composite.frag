@@ -1,0 +1,65 @@
+// The partial or complete image goes to the window, lit, with the depth that opaque geometry is tested against.
+// In: Hits, Normals or Layers.
+
+#include "Shared/Scene.glsl"
+#include "Shared/Buffers.glsl"
+#include "Rays/Rays.glsl"
+#include "Output/WindowDepth.glsl"
+#ifdef TRANSLUCENT
+#include "Light/Layers.glsl"
+#else
+#include "Light/Shading.glsl"
+#endif
+#ifdef HAS_NORMALS
+#include "Surface/PackedNormal.glsl"
+#endif
+
+layout(location = 0) out vec4 fragmentColor;
+// where VTK's passes ask for them, such as ambient occlusion: in view coordinates
+layout(location = 1) out vec4 fragmentPosition;
+layout(location = 2) out vec4 fragmentNormal;
+
+// A hit shows as soon as it is lit.
+#ifdef TRANSLUCENT
+bool Shows(uint pixel)
+{
+  return layers[pixel] != uvec2(0u);
+}
+#else
+bool Shows(uint pixel)
+{
+#ifdef HAS_NORMALS
+  return normals[pixel] != NO_NORMAL;
+#elif defined(COLORED)
+  return hits[pixel] != NO_HIT && !isnan(ColorValueOf(pixel)); // all ones until it is found
+#else
+  return hits[pixel] != NO_HIT;
+#endif
+}
+#endif
+
+void main()
+{
+  uint pixel = FragmentPixel();
+  if (!Shows(pixel))
+  {
+    discard;
+  }
+  float t = DepthOf(pixel);
+  gl_FragDepth = WindowDepth(t);
+#ifdef TRANSLUCENT
+  fragmentColor = BlendedLayers(pixel);
+  fragmentPosition = vec4(0.0); // blended like the colour: those of what lies behind stay
+  fragmentNormal = vec4(0.0);
+#else
+  vec3 direction = EyeRayDirection(pixel);
+#ifdef HAS_NORMALS
+  vec3 normal = UnpackNormal(normals[pixel]);
+#else
+  vec3 normal = -normalize(direction); // the best guess of an unlit surface's
+#endif
+  fragmentPosition = vec4(EyeRayOrigin(pixel) + t * direction, 1.0);
+  fragmentNormal = vec4(dot(normal, direction) > 0.0 ? -normal : normal, 1.0);
+  fragmentColor = vec4(Shade(pixel, t, normal, HitOf(pixel).Surface), 1.0);
+#endif
+}

@@ -1,0 +1,38 @@
+// The image for a vtkHardwareSelector: where a surface shows, the prop's identifier or that of the cell that was hit.
+// In: Hits.
+
+#include "Shared/Scene.glsl"
+#include "Shared/Buffers.glsl"
+#include "Rays/Rays.glsl"
+#include "Output/WindowDepth.glsl"
+
+uniform vec4 selected; // the prop's identifier as a colour; w: which 24 bits of a cell's, 0: the prop's
+
+layout(location = 0) out vec4 fragmentColor;
+
+// 24 bits of the number of the cell that holds the point at parameter t, as VTK's meshes have it.
+vec3 CellColor(uint pixel, float t, int part)
+{
+  Ray ray = CameraRay(pixel);
+  ivec3 cells = scene.Samples.xyz - 1;
+  uvec3 cell = uvec3(clamp(ivec3(floor(ray.Origin + double(t) * ray.Direction)), ivec3(0), cells - 1));
+  uint row = cell.y + uint(cells.y) * cell.z;
+  uint high, low, carry;
+  umulExtended(row, uint(cells.x), high, low);
+  low = uaddCarry(low, cell.x, carry);
+  high += carry;
+  uint bits = part == 1 ? low & 0xFFFFFFu : low >> 24 | (high & 0xFFFFu) << 8;
+  return vec3(bits & 255u, bits >> 8 & 255u, bits >> 16 & 255u) / 255.0;
+}
+
+void main()
+{
+  uint pixel = FragmentPixel();
+  if (hits[pixel] == NO_HIT)
+  {
+    discard;
+  }
+  float t = DepthOf(pixel);
+  gl_FragDepth = WindowDepth(t);
+  fragmentColor = vec4(selected.w == 0.0 ? selected.rgb : CellColor(pixel, t, int(selected.w)), 1.0);
+}

@@ -1,0 +1,29 @@
+// Decompression of the volume that gives the colours: the blocks that DecodeBlocks.comp has just decoded of the other,
+// into the same slots; or, where there is no cache, all blocks.
+// In: CacheRequests, CacheMap, Macrocells, Payload. Out: CacheValues.
+
+#define CACHE_BY_ROWS
+#define DECODES_COLORS
+
+#include "Shared/Scene.glsl"
+#include "Shared/Buffers.glsl"
+#include "Shared/Grid.glsl"
+#include "Cache/BlockMap.glsl"
+#include "Store/BlockStore.glsl"
+#include "Store/ZFPDecode.glsl"
+
+layout(local_size_x = 32) in;
+
+// None where the request was refused.
+uint SlotFor(uint i, uint block)
+{
+  return SlotOf(BlockCoordinates(block));
+}
+
+// Behind all slots of the volume that is drawn.
+uint FirstSlot()
+{
+  return NumberOfSlots();
+}
+
+#include "Store/DecodeListed.glsl"

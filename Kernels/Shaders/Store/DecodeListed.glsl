@@ -1,0 +1,53 @@
+// What both decoding stages do, one invocation a block: of the blocks that rays have asked for, or, where there is no
+// cache, of all. The stage has told SlotFor(i, block), NONE where the block gets none, and FirstSlot(), from which on its
+// slots lie in the buffer of values.
+
+uint NumberOfBlocks()
+{
+#ifdef HAS_CACHE_MAP
+  return min(control.Requests, scene.Cache.x);
+#else
+  return uint(scene.Blocks.w);
+#endif
+}
+
+uint BlockAt(uint i)
+{
+#ifdef HAS_CACHE_MAP
+  return cacheRequests[i];
+#else
+  return i;
+#endif
+}
+
+#ifdef BINDING_HIDDEN_CELLS
+#include "Store/HiddenCells.glsl"
+#endif
+
+void StoreBlock(uint slot, DecodedBlock decoded)
+{
+#define STORE_ROW(r) cacheRows[16u * slot + uint(r)] = decoded.Row[r];
+  FOR_ROWS(STORE_ROW)
+}
+
+void main()
+{
+  uint lane = gl_LocalInvocationIndex;
+  uint number = NumberOfBlocks();
+  uint stride = gl_NumWorkGroups.x * gl_NumWorkGroups.y * ZFP_LANES;
+  for (uint i = FoldedGroup() * ZFP_LANES + lane; i < number; i += stride)
+  {
+    uint block = BlockAt(i);
+    if (InSegment(block))
+    {
+      uint slot = SlotFor(i, block);
+      if (slot != NONE)
+      {
+        StoreBlock(FirstSlot() + slot, DecodeBlock(block, lane));
+#ifdef BINDING_HIDDEN_CELLS
+        cacheRows[HiddenRow(slot)] = uvec4(FindHiddenCells(block), 0u, 0u);
+#endif
+      }
+    }
+  }
+}
