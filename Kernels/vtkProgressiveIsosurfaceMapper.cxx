@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkProgressiveIsosurfaceMapper.h"
 
-#include "Scene/CompressedInput.h"
 #include "Pipeline/ProgressivePipeline.h"
+#include "Scene/CompressedInput.h"
 #include "Scene/SceneTranslation.h"
 #include "vtkProgressiveIsosurfaceStatistics.h"
 

@@ -153,7 +153,7 @@ void Device::Release()
   {
     this->Free(static_cast<Buffer>(i));
   }
-  this->FreePayloads();
+  this->FreeStreams();
   this->UploadPalette({});
   this->ForgetSnapshots();
   glDeleteBuffers(static_cast<GLsizei>(this->SpareSnapshots.size()), this->SpareSnapshots.data());
@@ -197,12 +197,12 @@ std::string Device::GetDescription()
 // Stages
 //------------------------------------------------------------------------------
 // What the stage reads of a compressed stream; null where it reads none, or there is none.
-const Device::PayloadBuffers* Device::PayloadOf(Stage stage) const
+const Device::StreamBuffers* Device::StreamOf(Stage stage) const
 {
   for (Buffer buffer : PipelineStages()[static_cast<int>(stage)].Buffers)
   {
-    const auto found = this->Payloads.find(buffer);
-    if (found != this->Payloads.end())
+    const auto found = this->Streams.find(buffer);
+    if (found != this->Streams.end())
     {
       return &found->second;
     }
@@ -210,14 +210,14 @@ const Device::PayloadBuffers* Device::PayloadOf(Stage stage) const
   return nullptr;
 }
 
-bool Device::Bind(Stage stage, GLuint payload, const PayloadSegment* segment)
+bool Device::Bind(Stage stage, GLuint stream, const StreamSegment* segment)
 {
   std::vector<Buffer> bound;
   std::vector<GLuint> names;
   for (Buffer buffer : PipelineStages()[static_cast<int>(stage)].Buffers)
   {
-    const bool stream = buffer == Buffer::Payload || buffer == Buffer::ColorPayload;
-    const GLuint name = stream ? payload : this->Names[Index(buffer)];
+    const bool ofStream = buffer == Buffer::Stream || buffer == Buffer::ColorStream;
+    const GLuint name = ofStream ? stream : this->Names[Index(buffer)];
     if (name)
     {
       bound.push_back(buffer);
@@ -253,13 +253,12 @@ void Device::Run(Stage stage, const Launch& launch)
   {
     return; // what an earlier stage should have made may be missing: this one could hang the GPU
   }
-  const PayloadBuffers* payload = this->PayloadOf(stage);
-  const std::size_t times = payload ? payload->Segments.size() : 1;
+  const StreamBuffers* stream = this->StreamOf(stage);
+  const std::size_t times = stream ? stream->Segments.size() : 1;
   this->BeginTiming(stage);
   for (std::size_t i = 0; i < times; ++i)
   {
-    if (this->Bind(
-          stage, payload ? payload->Names[i] : 0, payload ? &payload->Segments[i] : nullptr))
+    if (this->Bind(stage, stream ? stream->Names[i] : 0, stream ? &stream->Segments[i] : nullptr))
     {
       launch();
       glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
@@ -375,10 +374,10 @@ void Device::ForgetStages(const std::set<Stage>& except)
 std::int64_t Device::GetBytes(Buffer buffer) const
 {
   std::int64_t bytes = this->Bytes[Index(buffer)];
-  const auto payload = this->Payloads.find(buffer);
-  if (payload != this->Payloads.end())
+  const auto stream = this->Streams.find(buffer);
+  if (stream != this->Streams.end())
   {
-    for (const PayloadSegment& segment : payload->second.Segments)
+    for (const StreamSegment& segment : stream->second.Segments)
     {
       bytes += segment.Bytes;
     }
@@ -528,35 +527,35 @@ void Device::Upload(Buffer buffer, const std::vector<std::uint32_t>& words)
 }
 
 // The stages only read it, and it may be too large for a second copy.
-bool Device::UploadPayload(
-  Buffer which, const unsigned char* stream, const std::vector<PayloadSegment>& segments)
+bool Device::UploadStream(
+  Buffer which, const unsigned char* bytes, const std::vector<StreamSegment>& segments)
 {
-  PayloadBuffers& payload = this->Payloads[which];
-  for (const PayloadSegment& segment : segments)
+  StreamBuffers& stream = this->Streams[which];
+  for (const StreamSegment& segment : segments)
   {
     GLuint name = 0;
     if (!this->MakeBuffer(name, segment.Bytes, LargestPlain, "the compressed volume"))
     {
       return false;
     }
-    payload.Names.push_back(name);
-    payload.Segments.push_back(segment);
+    stream.Names.push_back(name);
+    stream.Segments.push_back(segment);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
     glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(segment.Bytes),
-      stream + segment.FirstByte);
+      bytes + segment.FirstByte);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
   }
   return true;
 }
 
-void Device::FreePayloads()
+void Device::FreeStreams()
 {
-  for (const auto& entry : this->Payloads)
+  for (const auto& entry : this->Streams)
   {
     const std::vector<GLuint>& names = entry.second.Names;
     glDeleteBuffers(static_cast<GLsizei>(names.size()), names.data());
   }
-  this->Payloads.clear();
+  this->Streams.clear();
 }
 
 //------------------------------------------------------------------------------
@@ -594,8 +593,7 @@ void Device::Read(Buffer buffer, std::int64_t offset, void* data, std::int64_t b
   glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
 }
 
-void Device::Write(
-  Buffer buffer, std::size_t offset, const void* data, std::size_t bytes)
+void Device::Write(Buffer buffer, std::size_t offset, const void* data, std::size_t bytes)
 {
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glBindBuffer(GL_COPY_READ_BUFFER, this->Staging);
@@ -698,8 +696,7 @@ private:
 }
 
 // What is drawn into now is read, whatever was to be read from before.
-void Device::CaptureDepths(
-  const std::int32_t image[4], Buffer buffer, std::int64_t offset)
+void Device::CaptureDepths(const std::int32_t image[4], Buffer buffer, std::int64_t offset)
 {
   GLint drawn = 0, read = 0, samples = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &drawn);

@@ -6,11 +6,11 @@
 #ifndef PipelineResources_h
 #define PipelineResources_h
 
-#include "Shaders/BufferTable.h"
-#include "GL/ProgramCache.h"
-#include "Shaders/StageTable.h"
 #include "GL/ProgIsoGL.h"
+#include "GL/ProgramCache.h"
+#include "Shaders/BufferTable.h"
 #include "Shaders/SceneBlock.h"
+#include "Shaders/StageTable.h"
 
 #include <array>
 #include <cstdint>
@@ -21,9 +21,9 @@
 #include <string>
 #include <vector>
 
-/// A part of the payload that a buffer of its own holds: whole layers of macrocells, and the layer
+/// A part of the stream that a buffer of its own holds: whole layers of macrocells, and the layer
 /// of blocks that the last of them reach into.
-struct PayloadSegment
+struct StreamSegment
 {
   std::int64_t FirstByte = 0; ///< of the stream, a multiple of 4
   std::int64_t Bytes = 0;
@@ -76,10 +76,10 @@ public:
   /// Fill a buffer that the stages only read.
   void Upload(Buffer buffer, const std::vector<std::uint32_t>& words);
 
-  ///@{ A compressed stream, in as many buffers as it takes: of Payload or of ColorPayload.
-  bool UploadPayload(
-    Buffer which, const unsigned char* stream, const std::vector<PayloadSegment>& segments);
-  void FreePayloads();
+  ///@{ A compressed stream, in as many buffers as it takes: of Stream or of ColorStream.
+  bool UploadStream(
+    Buffer which, const unsigned char* bytes, const std::vector<StreamSegment>& segments);
+  void FreeStreams();
   ///@}
 
   ///@{ Traffic with the CPU. It waits for the GPU only where it reads.
@@ -102,7 +102,7 @@ public:
 
   ///@{ Where nothing has gone wrong, run a stage on so many work groups, or on as many as the
   /// control block says at an offset; a
-  /// stage that reads the payload once for each of its segments.
+  /// stage that reads the stream once for each of its segments.
   void Dispatch(Stage stage, std::int64_t groups);
   void DispatchIndirect(Stage stage, std::size_t controlOffset);
   ///@}
@@ -148,10 +148,10 @@ private:
     GLuint Begin, End;
   };
 
-  struct PayloadBuffers
+  struct StreamBuffers
   {
     std::vector<GLuint> Names;
-    std::vector<PayloadSegment> Segments;
+    std::vector<StreamSegment> Segments;
   };
 
   bool CheckContext();
@@ -159,8 +159,8 @@ private:
   bool Allocate(Buffer buffer, std::int64_t bytes);
   bool MakeBuffer(GLuint& name, std::int64_t bytes, std::int64_t largestPlain, const char* what);
   void Free(Buffer buffer);
-  const PayloadBuffers* PayloadOf(Stage stage) const;
-  bool Bind(Stage stage, GLuint payload, const PayloadSegment* segment);
+  const StreamBuffers* StreamOf(Stage stage) const;
+  bool Bind(Stage stage, GLuint stream, const StreamSegment* segment);
   template <typename Launch>
   void Run(Stage stage, const Launch& launch);
   void BeginTiming(Stage stage);
@@ -168,7 +168,7 @@ private:
 
   std::array<GLuint, NumberOfBuffers> Names = {};
   std::array<std::int64_t, NumberOfBuffers> Bytes = {};
-  std::map<Buffer, PayloadBuffers> Payloads;
+  std::map<Buffer, StreamBuffers> Streams;
   std::shared_ptr<ProgramCache> Programs;
   PipelineExtent Extent;
 

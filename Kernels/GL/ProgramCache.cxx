@@ -31,8 +31,7 @@ std::string AttachShader(GLuint program, GLenum type, const std::string& source)
 }
 }
 
-std::shared_ptr<ProgramCache> ProgramCache::OfContext(
-  std::uint64_t context, bool byExtensions)
+std::shared_ptr<ProgramCache> ProgramCache::OfContext(std::uint64_t context, bool byExtensions)
 {
   static std::map<std::uint64_t, std::weak_ptr<ProgramCache>> contexts;
   static std::mutex mutex; // windows may be rendered by threads of their own

@@ -5,8 +5,8 @@
 #ifndef PipelinePrograms_h
 #define PipelinePrograms_h
 
-#include "Shaders/StageTable.h"
 #include "GL/ProgIsoGL.h"
+#include "Shaders/StageTable.h"
 
 #include <cstdint>
 #include <map>

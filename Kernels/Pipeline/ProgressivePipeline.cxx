@@ -71,8 +71,8 @@ void ProgressivePipeline::Release()
 // All GPU memory beside the compressed stream.
 std::int64_t ProgressivePipeline::BytesWith(const PipelineExtent& extent) const
 {
-  std::int64_t bytes = static_cast<std::int64_t>(sizeof(SceneBlock)) +
-    Device::GetStagingLimit() + (extent.Colored ? PaletteBytes : 0);
+  std::int64_t bytes = static_cast<std::int64_t>(sizeof(SceneBlock)) + Device::GetStagingLimit() +
+    (extent.Colored ? PaletteBytes : 0);
   for (Lifetime lifetime :
     { Lifetime::Pipeline, Lifetime::Volume, Lifetime::Image, Lifetime::Cache })
   {
@@ -86,7 +86,7 @@ PipelineExtent ProgressivePipeline::WithSlots(std::int64_t slots) const
   PipelineExtent extent = this->Extent;
   extent.Cached = true;
   extent.Slots = slots;
-  extent.Pages = std::min(extent.CoarseCells, std::max(LeastPages, slots / SlotsPerPage));
+  extent.Pages = std::min(extent.Macrocells, std::max(LeastPages, slots / SlotsPerPage));
   return extent;
 }
 
@@ -154,19 +154,19 @@ void ProgressivePipeline::SetVolume(const PipelineVolume& volume)
   this->Volume = volume;
   this->VolumeLoaded = false;
   this->Started = false;
-  std::int64_t blocks = 1, coarseCells = 1;
+  std::int64_t blocks = 1, macrocells = 1;
   for (int axis = 0; axis < 3; ++axis)
   {
     this->Scene.Samples[axis] = volume.Samples[axis];
     this->Scene.Blocks[axis] = static_cast<std::int32_t>(DivideUp(volume.Samples[axis], 4));
-    this->Scene.CoarseCells[axis] = static_cast<std::int32_t>(DivideUp(volume.Samples[axis], 16));
+    this->Scene.Macrocells[axis] = static_cast<std::int32_t>(DivideUp(volume.Samples[axis], 16));
     blocks *= this->Scene.Blocks[axis];
-    coarseCells *= this->Scene.CoarseCells[axis];
+    macrocells *= this->Scene.Macrocells[axis];
   }
   this->Scene.Samples[3] = volume.Values.BlockBits;
   this->Scene.Blocks[3] = static_cast<std::int32_t>(blocks);
-  this->Scene.CoarseCells[3] = static_cast<std::int32_t>(coarseCells);
-  this->Extent.CoarseCells = coarseCells;
+  this->Scene.Macrocells[3] = static_cast<std::int32_t>(macrocells);
+  this->Extent.Macrocells = macrocells;
   this->Extent.Colored = volume.Colors.Data != nullptr;
   this->Extent.HiddenWords = static_cast<std::int64_t>(volume.Hidden.size());
   this->TouchedSlots.clear();
@@ -196,15 +196,15 @@ void ProgressivePipeline::SetSettings(const PipelineSettings& settings)
 }
 
 // As few segments as the largest buffer allows, of whole layers of macrocells.
-bool ProgressivePipeline::SplitPayload(
-  const CompressedStream& stream, std::vector<PayloadSegment>& segments)
+bool ProgressivePipeline::SplitStream(
+  const CompressedStream& stream, std::vector<StreamSegment>& segments)
 {
   const std::int64_t largest =
     std::min(this->Gpu.GetLargestBuffer(), static_cast<std::int64_t>(1) << 33);
   const std::int64_t layerBlocks =
     static_cast<std::int64_t>(this->Scene.Blocks[0]) * this->Scene.Blocks[1];
   const std::int64_t layerCells =
-    static_cast<std::int64_t>(this->Scene.CoarseCells[0]) * this->Scene.CoarseCells[1];
+    static_cast<std::int64_t>(this->Scene.Macrocells[0]) * this->Scene.Macrocells[1];
   const std::int64_t bits = stream.BlockBits;
   // one more layer of blocks, which the last macrocells reach into, and a word for the first bits
   const std::int64_t layers = (8 * (largest - 8) / (layerBlocks * bits) - 1) / 4;
@@ -214,13 +214,13 @@ bool ProgressivePipeline::SplitPayload(
       Bytes(DivideUp(5 * layerBlocks * bits, 8)) + ", more than one GPU buffer can hold (" +
       Bytes(largest) + "): lower the rate");
   }
-  for (std::int64_t first = 0; first < this->Scene.CoarseCells[2]; first += layers)
+  for (std::int64_t first = 0; first < this->Scene.Macrocells[2]; first += layers)
   {
-    const std::int64_t last = std::min<std::int64_t>(first + layers, this->Scene.CoarseCells[2]);
+    const std::int64_t last = std::min<std::int64_t>(first + layers, this->Scene.Macrocells[2]);
     const std::int64_t begin = 4 * first * layerBlocks;
     const std::int64_t end = std::min<std::int64_t>(4 * last * layerBlocks, this->Scene.Blocks[3]);
     const std::int64_t held = std::min<std::int64_t>(end + layerBlocks, this->Scene.Blocks[3]);
-    PayloadSegment segment;
+    StreamSegment segment;
     segment.FirstByte = begin * bits / 32 * 4;
     segment.Bytes = std::min(DivideUp(held * bits, 32) * 4, stream.Size) - segment.FirstByte;
     segment.FirstBlock = static_cast<std::uint32_t>(begin);
@@ -235,10 +235,10 @@ bool ProgressivePipeline::SplitPayload(
 
 bool ProgressivePipeline::UploadStreams()
 {
-  this->Gpu.FreePayloads();
-  std::vector<PayloadSegment> segments;
-  if (!this->SplitPayload(this->Volume.Values, segments) ||
-    !this->Gpu.UploadPayload(Buffer::Payload, this->Volume.Values.Data, segments))
+  this->Gpu.FreeStreams();
+  std::vector<StreamSegment> segments;
+  if (!this->SplitStream(this->Volume.Values, segments) ||
+    !this->Gpu.UploadStream(Buffer::Stream, this->Volume.Values.Data, segments))
   {
     return false;
   }
@@ -247,8 +247,8 @@ bool ProgressivePipeline::UploadStreams()
     return true;
   }
   segments.clear();
-  return this->SplitPayload(this->Volume.Colors, segments) &&
-    this->Gpu.UploadPayload(Buffer::ColorPayload, this->Volume.Colors.Data, segments);
+  return this->SplitStream(this->Volume.Colors, segments) &&
+    this->Gpu.UploadStream(Buffer::ColorStream, this->Volume.Colors.Data, segments);
 }
 
 bool ProgressivePipeline::MakeVolumeBuffers()
@@ -268,7 +268,7 @@ bool ProgressivePipeline::LoadVolume()
   {
     return false;
   }
-  this->Gpu.Dispatch(Stage::BlockRanges, this->Extent.CoarseCells);
+  this->Gpu.Dispatch(Stage::BlockRanges, this->Extent.Macrocells);
   return true;
 }
 
@@ -285,8 +285,8 @@ bool ProgressivePipeline::LoadWholeVolume()
   {
     this->Gpu.Dispatch(Stage::DecodeColors, DivideUp(this->Extent.Slots, 32));
   }
-  this->Gpu.FreePayloads();
-  this->Gpu.Dispatch(Stage::BlockRanges, this->Extent.CoarseCells);
+  this->Gpu.FreeStreams();
+  this->Gpu.Dispatch(Stage::BlockRanges, this->Extent.Macrocells);
   return true;
 }
 
@@ -309,7 +309,7 @@ bool ProgressivePipeline::ResizeCache(std::int64_t slots)
   this->Scene.Cache[3] = slots == this->MaximumSlots() ? 1 : 0;
   this->Gpu.UploadScene(this->Scene);
   this->Gpu.Dispatch(Stage::CacheReset,
-    std::min<std::int64_t>(4096, DivideUp(std::max(slots, this->Extent.CoarseCells), 256)));
+    std::min<std::int64_t>(4096, DivideUp(std::max(slots, this->Extent.Macrocells), 256)));
   this->CacheAge = this->PassesSubmitted;
   this->Refusals = 0;
   this->TouchedSlots.clear();
@@ -356,7 +356,7 @@ void ProgressivePipeline::FillInScene(const SceneBlock& scene)
   this->Scene = scene;
   std::copy(own.Samples, own.Samples + 4, this->Scene.Samples);
   std::copy(own.Blocks, own.Blocks + 4, this->Scene.Blocks);
-  std::copy(own.CoarseCells, own.CoarseCells + 4, this->Scene.CoarseCells);
+  std::copy(own.Macrocells, own.Macrocells + 4, this->Scene.Macrocells);
   std::copy(own.Cache, own.Cache + 4, this->Scene.Cache);
   this->Scene.Surface[3] = this->Volume.Colors.BlockBits;
   this->Scene.Cache[2] = static_cast<std::uint32_t>(this->Settings.SpeculationLimit);
@@ -403,7 +403,7 @@ bool ProgressivePipeline::MakeRoom(bool newImage)
   std::int64_t slots = cached ? std::min(this->Extent.Slots, most) : whole.Slots;
   if (reload)
   {
-    this->Gpu.FreePayloads();
+    this->Gpu.FreeStreams();
     slots = cached ? 0 : whole.Slots;
   }
   this->Started = this->Started && slots == this->Extent.Slots && !reload;

@@ -127,7 +127,7 @@ private:
   std::int64_t MinimumSlots() const;
   std::int64_t MaximumSlots() const;
 
-  bool SplitPayload(const CompressedStream& stream, std::vector<PayloadSegment>& segments);
+  bool SplitStream(const CompressedStream& stream, std::vector<StreamSegment>& segments);
   bool UploadStreams();
   bool MakeVolumeBuffers();
   bool LoadVolume();

@@ -17,7 +17,7 @@ class vtkVolumeMapper;
 
 /// `viewport`: width, height and origin of what is drawn into. Rays, image, isovalues, clipping,
 /// cropping, lights and material of a volume seen by a renderer's camera. Samples, Blocks,
-/// CoarseCells and Cache are the pipeline's own business.
+/// Macrocells and Cache are the pipeline's own business.
 SceneBlock TranslateScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMapper* mapper,
   vtkImageData* image, vtkCompressedVolume* compressed, const int viewport[4]);
 

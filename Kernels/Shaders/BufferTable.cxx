@@ -14,15 +14,15 @@ std::int64_t StatisticsBytes(const PipelineExtent&)
   return PassRecords * sizeof(PassRecord);
 }
 
-std::int64_t PayloadBytes(const PipelineExtent&)
+std::int64_t StreamBytes(const PipelineExtent&)
 {
-  return 0; // see Device::UploadPayload
+  return 0; // see Device::UploadStream
 }
 
 // two floats, two bytes for each of its 64 blocks; with a cache a map page and a bit for each block
 std::int64_t MacrocellBytes(const PipelineExtent& e)
 {
-  return (8 + 2 * 64 + (e.Cached ? 4 + 64 / 8 : 0)) * e.CoarseCells;
+  return (8 + 2 * 64 + (e.Cached ? 4 + 64 / 8 : 0)) * e.Macrocells;
 }
 
 std::int64_t HiddenBytes(const PipelineExtent& e)
@@ -85,8 +85,8 @@ const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers()
   static const std::array<BufferInfo, NumberOfBuffers> buffers = { {
     { Buffer::Control,        "control",          "CONTROL",          Lifetime::Pipeline, ControlBytes,    "all stages",                            "all stages" },
     { Buffer::PassStatistics, "pass_statistics",  "PASS_STATISTICS",  Lifetime::Pipeline, StatisticsBytes, "PlanPass",                              "the mapper" },
-    { Buffer::Payload,        "compressed",       "PAYLOAD",          Lifetime::Volume,   PayloadBytes,    "the mapper",                            "BlockRanges, DecodeBlocks" },
-    { Buffer::ColorPayload,   "compressed_colors", "PAYLOAD",         Lifetime::Volume,   PayloadBytes,    "the mapper",                            "DecodeColors" },
+    { Buffer::Stream,        "compressed",       "STREAM",          Lifetime::Volume,   StreamBytes,    "the mapper",                            "BlockRanges, DecodeBlocks" },
+    { Buffer::ColorStream,   "compressed_colors", "STREAM",         Lifetime::Volume,   StreamBytes,    "the mapper",                            "DecodeColors" },
     { Buffer::Macrocells,     "macrocells",       "MACROCELLS",       Lifetime::Volume,   MacrocellBytes,  "BlockRanges, FinishHits, RequestBlocks, DecodeBlocks, CacheEvict, CacheReset", "CastRays, CastFewRays, FinishHits, RequestBlocks, DecodeBlocks" },
     { Buffer::HiddenCells,    "hidden_cells",     "HIDDEN_CELLS",     Lifetime::Volume,   HiddenBytes,     "the mapper",                            "BlockRanges, DecodeBlocks" },
     { Buffer::Hits,           "hits",             "HITS",             Lifetime::Image,    HitBytes,        "CastRays, CastFewRays, the mapper",     "all stages that cast rays, Composite, Select" },

@@ -12,8 +12,8 @@ enum class Buffer
 {
   Control,
   PassStatistics,
-  Payload,
-  ColorPayload,
+  Stream,
+  ColorStream,
   Macrocells,
   HiddenCells,
   Hits,
@@ -32,7 +32,7 @@ constexpr int NumberOfBuffers = static_cast<int>(Buffer::NumberOfBuffers);
 /// What the buffers' sizes follow from, and what of it the scene at hand needs.
 struct PipelineExtent
 {
-  std::int64_t CoarseCells = 0;
+  std::int64_t Macrocells = 0;
   std::int64_t Pixels = 0;
   std::int64_t Slots = 0;       ///< blocks that the cache holds, or all blocks of the volume
   std::int64_t Pages = 0;       ///< of the block map
@@ -79,7 +79,7 @@ struct BufferInfo
   const char* Consumers;
 };
 
-/// The table itself, in the order of the enumeration. The payload's size is the stream's.
+/// The table itself, in the order of the enumeration. The stream's size is the stream's.
 const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers();
 
 /// Bytes of a cache slot: of its decoded samples, and what is hidden.

@@ -36,7 +36,7 @@ struct SceneBlock
   std::int32_t LastDrawn[4] = {};
   std::int32_t Samples[4] = {};
   std::int32_t Blocks[4] = {};
-  std::int32_t CoarseCells[4] = {};
+  std::int32_t Macrocells[4] = {};
   std::int32_t Image[4] = {};
   std::uint32_t Cache[4] = {};
   std::uint32_t Policy[4] = {};

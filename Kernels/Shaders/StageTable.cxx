@@ -11,7 +11,7 @@ const std::vector<StageInfo>& PipelineStages()
   using B = Buffer;
   // clang-format off
   static const std::vector<StageInfo> stages = {
-    { Stage::BlockRanges,   "BlockRanges",   "Store/BlockRanges.comp", { B::Macrocells, B::Payload, B::HiddenCells, B::CacheValues } },
+    { Stage::BlockRanges,   "BlockRanges",   "Store/BlockRanges.comp", { B::Macrocells, B::Stream, B::HiddenCells, B::CacheValues } },
     { Stage::PlanPass,      "PlanPass",      "Rays/PlanPass.comp", { B::Control, B::PassStatistics } },
     { Stage::CacheReset,    "CacheReset",    "Cache/CacheReset.comp", { B::Control, B::Macrocells, B::CacheMap, B::CacheFreeSlots } },
     { Stage::CacheAges,     "CacheAges",     "Cache/CacheAges.comp", { B::Control, B::CacheMap } },
@@ -20,8 +20,8 @@ const std::vector<StageInfo>& PipelineStages()
     { Stage::CastFewRays,   "CastFewRays",   "Rays/CastFewRays.comp", { B::Control, B::Macrocells, B::CacheMap, B::CacheValues, B::Hits, B::Rays, B::CacheSeen } },
     { Stage::FinishHits,   "FinishHits",   "Surface/FinishHits.comp", { B::Control, B::Macrocells, B::CacheMap, B::CacheValues, B::CacheRequests, B::Hits, B::Normals, B::Layers, B::Rays } },
     { Stage::RequestBlocks, "RequestBlocks", "Cache/RequestBlocks.comp", { B::Control, B::Macrocells, B::CacheMap, B::CacheRequests, B::Hits, B::Rays } },
-    { Stage::DecodeBlocks,  "DecodeBlocks",  "Store/DecodeBlocks.comp", { B::Control, B::Payload, B::HiddenCells, B::Macrocells, B::CacheMap, B::CacheFreeSlots, B::CacheRequests, B::CacheValues } },
-    { Stage::DecodeColors,  "DecodeColors",  "Store/DecodeColors.comp", { B::Control, B::ColorPayload, B::Macrocells, B::CacheMap, B::CacheRequests, B::CacheValues } },
+    { Stage::DecodeBlocks,  "DecodeBlocks",  "Store/DecodeBlocks.comp", { B::Control, B::Stream, B::HiddenCells, B::Macrocells, B::CacheMap, B::CacheFreeSlots, B::CacheRequests, B::CacheValues } },
+    { Stage::DecodeColors,  "DecodeColors",  "Store/DecodeColors.comp", { B::Control, B::ColorStream, B::Macrocells, B::CacheMap, B::CacheRequests, B::CacheValues } },
     { Stage::Composite,     "Composite",     "Output/Composite.frag", { B::Hits, B::Normals, B::Layers } },
     { Stage::Select,        "Select",        "Output/Select.frag", { B::Hits } },
   };
@@ -92,7 +92,7 @@ std::string AssembleShader(const std::string& file, const std::vector<Buffer>& b
         << binding++ << "\n";
   }
   PipelineExtent one = extent; // what the scene needs, whatever its size
-  one.CoarseCells = one.Pixels = one.Slots = one.Pages = 1;
+  one.Macrocells = one.Pixels = one.Slots = one.Pages = 1;
   for (const BufferInfo& info : PipelineBuffers())
   {
     if (info.Bytes(one) > 0)

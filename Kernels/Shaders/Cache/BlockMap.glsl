@@ -14,7 +14,7 @@ ivec3 SideOffset(int i)
 uint SlotOf(ivec3 block)
 {
 #ifdef HAS_CACHE_MAP
-  uint page = macrocells[CoarseIndex(block >> 2)].Page;
+  uint page = macrocells[MacrocellIndex(block >> 2)].Page;
   return page >= CLAIMED ? NONE : mapPages[page].Slots[LocalIndex(block)];
 #else
   return BlockIndex(block);
@@ -109,7 +109,7 @@ void CountBlocks(ivec3 first, ivec3 reach)
 // The least recently used pages are the first to be evicted.
 void UsePage(ivec3 coarse)
 {
-  uint page = macrocells[CoarseIndex(coarse)].Page;
+  uint page = macrocells[MacrocellIndex(coarse)].Page;
   if (mapPages[page].Stamp != control.PassSerial)
   {
     uint before = atomicExchange(mapPages[page].Stamp, control.PassSerial);

@@ -10,7 +10,7 @@ void main()
 {
   uint first = 256u * FoldedGroup() + gl_LocalInvocationIndex;
   uint stride = 256u * gl_NumWorkGroups.x * gl_NumWorkGroups.y;
-  for (uint i = first; i < uint(scene.CoarseCells.w); i += stride)
+  for (uint i = first; i < uint(scene.Macrocells.w); i += stride)
   {
     macrocells[i].Page = NONE;
     macrocells[i].Requested[0] = 0u;

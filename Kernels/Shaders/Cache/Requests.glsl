@@ -40,7 +40,7 @@ void ListRequest(uint at, uint block)
   }
   ivec3 coordinates = BlockCoordinates(block);
   uint local = LocalIndex(coordinates);
-  atomicAnd(macrocells[CoarseIndex(coordinates >> 2)].Requested[local >> 5], ~(1u << (local & 31u)));
+  atomicAnd(macrocells[MacrocellIndex(coordinates >> 2)].Requested[local >> 5], ~(1u << (local & 31u)));
 }
 
 // Call first, with a barrier before any request.
@@ -55,7 +55,7 @@ void OpenRequests()
 // Asks for a block, unless another has already done so in this pass.
 void RequestBlock(ivec3 block)
 {
-  uint cell = CoarseIndex(block >> 2);
+  uint cell = MacrocellIndex(block >> 2);
   uint local = LocalIndex(block);
   uint bit = 1u << (local & 31u);
   if ((macrocells[cell].Requested[local >> 5] & bit) != 0u ||

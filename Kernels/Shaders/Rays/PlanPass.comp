@@ -104,7 +104,7 @@ void PlanEviction()
   uint pages = scene.Cache.y;
   // there is a slot for every block, a page for every macrocell
   bool allSlots = slots >= uint(scene.Blocks.w);
-  bool allPages = pages >= uint(scene.CoarseCells.w);
+  bool allPages = pages >= uint(scene.Macrocells.w);
   uint enoughSlots = control.Refused > 0u ? slots / 2u : max(slots / 8u, min(control.Requests, slots / 2u));
   uint enoughPages = control.Refused > 0u ? pages / 2u : max(pages / 8u, min(control.TakenPages, pages / 2u));
   bool fewSlots = !allSlots && control.FreeSlots < enoughSlots;

@@ -92,7 +92,7 @@ bool NextBlock(Ray ray, inout ivec3 block)
 }
 
 // Leaves the macrocell that holds `block`; false where the ray has left the volume.
-bool SkipCoarseCell(Ray ray, inout ivec3 block)
+bool SkipMacrocell(Ray ray, inout ivec3 block)
 {
   ivec3 coarse = block >> 2;
   dvec3 exits = PlanesT(ray, ExitPlanes(ray, coarse, 16));
@@ -151,7 +151,7 @@ GridCursor OutsideGrid()
 void MoveCursor(inout GridCursor at, ivec3 coarse)
 {
   at.Coarse = coarse;
-  at.Index = CoarseIndex(coarse);
+  at.Index = MacrocellIndex(coarse);
   at.Range = vec2(macrocells[at.Index].Low, macrocells[at.Index].High);
   at.Active = Straddles(at.Range.x, at.Range.y);
 }
@@ -184,7 +184,7 @@ bool FindActiveBlock(Ray ray, inout ivec3 block, inout GridCursor at)
     }
     if (!at.Active)
     {
-      inside = SkipCoarseCell(ray, block);
+      inside = SkipMacrocell(ray, block);
       continue;
     }
     if (BlockActive(at, block))

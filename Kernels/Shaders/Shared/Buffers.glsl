@@ -69,8 +69,8 @@ layout(std430, binding = BINDING_PASS_STATISTICS) buffer PassStatistics { PassRe
 #endif
 
 // ---- the volume
-#ifdef BINDING_PAYLOAD
-layout(std430, binding = BINDING_PAYLOAD) readonly buffer PayloadBuffer { uint payload[]; };
+#ifdef BINDING_STREAM
+layout(std430, binding = BINDING_STREAM) readonly buffer StreamBuffer { uint stream[]; };
 #endif
 #ifdef BINDING_MACROCELLS
 struct Macrocell

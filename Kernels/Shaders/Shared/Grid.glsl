@@ -17,9 +17,9 @@ bool InGrid(ivec3 b)
   return all(greaterThanEqual(b, ivec3(0))) && all(lessThan(b, scene.Blocks.xyz));
 }
 
-uint CoarseIndex(ivec3 c)
+uint MacrocellIndex(ivec3 c)
 {
-  return uint(c.x) + uint(scene.CoarseCells.x) * (uint(c.y) + uint(scene.CoarseCells.y) * uint(c.z));
+  return uint(c.x) + uint(scene.Macrocells.x) * (uint(c.y) + uint(scene.Macrocells.y) * uint(c.z));
 }
 
 // Number of a block within its macrocell.

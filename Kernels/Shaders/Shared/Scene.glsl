@@ -38,7 +38,7 @@ layout(std140, binding = 0) uniform Scene
   ivec4 LastDrawn;
   ivec4 Samples;     // samples per axis; w: bits per block of the stream
   ivec4 Blocks;      // ZFP blocks per axis; w: their number
-  ivec4 CoarseCells; // macrocells of 4^3 blocks per axis; w: their number
+  ivec4 Macrocells; // macrocells of 4^3 blocks per axis; w: their number
   ivec4 Image;       // width and height of the viewport, its origin in the window
   uvec4 Cache;       // slots, pages of the block map, speculation limit, 1 where it cannot grow
   uvec4 Policy;      // few rays: as many pixels a ray; pixels that a ray has for each block it looks ahead

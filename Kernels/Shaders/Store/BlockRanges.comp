@@ -2,7 +2,7 @@
 // that its dual grids reach into, decodes them unless the whole volume is decoded already, and keeps the exact value
 // range of every block's 5^3 dual grid, quantised outwards to 8 + 8 bits within the range of the macrocell. Samples of
 // hidden cells alone do not count.
-// In: Payload or CacheValues, HiddenCells. Out: Macrocells.
+// In: Stream or CacheValues, HiddenCells. Out: Macrocells.
 
 #define CACHE_BY_ROWS
 
@@ -10,7 +10,7 @@
 #include "Shared/Buffers.glsl"
 #include "Rays/Rays.glsl"
 #include "Shared/Grid.glsl"
-#ifdef BINDING_PAYLOAD
+#ifdef BINDING_STREAM
 #include "Store/BlockStore.glsl"
 #include "Store/ZFPDecode.glsl"
 #endif
@@ -46,7 +46,7 @@ void KeepRow(ivec3 local, int row, uvec4 bits)
 
 void LoadBlock(ivec3 local, uint block)
 {
-#ifdef BINDING_PAYLOAD
+#ifdef BINDING_STREAM
   DecodedBlock decoded = DecodeBlock(block, gl_LocalInvocationIndex);
 #define KEEP_ROW(r) KeepRow(local, r, decoded.Row[r]);
   FOR_ROWS(KEEP_ROW)
@@ -174,10 +174,10 @@ void StoreRanges(uint cell)
 
 uvec2 MacrocellsOfDispatch()
 {
-#ifdef BINDING_PAYLOAD
+#ifdef BINDING_STREAM
   return uvec2(segment[4], segment[4] + segment[5]);
 #else
-  return uvec2(0u, uint(scene.CoarseCells.w));
+  return uvec2(0u, uint(scene.Macrocells.w));
 #endif
 }
 
@@ -187,9 +187,9 @@ void main()
   uvec2 cells = MacrocellsOfDispatch();
   for (uint cell = cells.x + FoldedGroup(); cell < cells.y; cell += gl_NumWorkGroups.x * gl_NumWorkGroups.y)
   {
-    ivec3 coarse = ivec3(cell % uint(scene.CoarseCells.x),
-      (cell / uint(scene.CoarseCells.x)) % uint(scene.CoarseCells.y),
-      cell / (uint(scene.CoarseCells.x) * uint(scene.CoarseCells.y)));
+    ivec3 coarse = ivec3(cell % uint(scene.Macrocells.x),
+      (cell / uint(scene.Macrocells.x)) % uint(scene.Macrocells.y),
+      cell / (uint(scene.Macrocells.x) * uint(scene.Macrocells.y)));
     LoadSamples(4 * coarse);
     for (uint i = lane; i < 64u; i += LANES)
     {

@@ -28,10 +28,10 @@ uvec2 BlockStart(uint block)
   return uvec2((high << 27) | (low >> 5), low & 31u);
 }
 
-// A word of the payload; zeros beyond the end.
-uint PayloadWord(uint word)
+// A word of the stream; zeros beyond the end.
+uint StreamWord(uint word)
 {
-  return word < segment[3] ? payload[word] : 0u;
+  return word < segment[3] ? stream[word] : 0u;
 }
 
 // A cursor over a block's bits that holds the two words around it.
@@ -45,7 +45,7 @@ struct BitCursor
 BitCursor OpenBlock(uint block)
 {
   uvec2 start = BlockStart(block);
-  return BitCursor(PayloadWord(start.x), PayloadWord(start.x + 1u), start.x, start.y);
+  return BitCursor(StreamWord(start.x), StreamWord(start.x + 1u), start.x, start.y);
 }
 
 // The next 32 bits.
@@ -63,7 +63,7 @@ void SkipBits(inout BitCursor bits, uint n)
     bits.Shift -= 32u;
     bits.Low = bits.High;
     ++bits.Word;
-    bits.High = PayloadWord(bits.Word + 1u);
+    bits.High = StreamWord(bits.Word + 1u);
   }
 }
 

@@ -1,6 +1,6 @@
 // Decompression (section 3.5): of the blocks that rays have asked for, into free cache slots; or, where there is no
 // cache, of the whole volume.
-// In: CacheRequests, CacheFreeSlots, Payload. Out: CacheValues, CacheMap, Macrocells, Control.
+// In: CacheRequests, CacheFreeSlots, Stream. Out: CacheValues, CacheMap, Macrocells, Control.
 
 #define CACHE_BY_ROWS
 
@@ -17,7 +17,7 @@ layout(local_size_x = 32) in;
 uint SlotFor(uint i, uint block)
 {
   ivec3 coordinates = BlockCoordinates(block);
-  uint cell = CoarseIndex(coordinates >> 2);
+  uint cell = MacrocellIndex(coordinates >> 2);
   uint local = LocalIndex(coordinates);
   atomicAnd(macrocells[cell].Requested[local >> 5], ~(1u << (local & 31u)));
   if (i >= control.FreeSlots)

@@ -1,6 +1,6 @@
 // Decompression of the volume that gives the colours: the blocks that DecodeBlocks.comp has just decoded of the other,
 // into the same slots; or, where there is no cache, all blocks.
-// In: CacheRequests, CacheMap, Macrocells, Payload. Out: CacheValues.
+// In: CacheRequests, CacheMap, Macrocells, Stream. Out: CacheValues.
 
 #define CACHE_BY_ROWS
 #define DECODES_COLORS
