@@ -3,7 +3,7 @@
 //
 // Our blocks against libzfp's own library, with the bit stream that it has: streams of any bits
 // decode to the same samples, any samples encode to the same bits, and our bit stream
-// (Filters/zfp/bitstream.inl) does what libzfp's does, call by call.
+// (cmake/zfp/bitstream.inl) does what libzfp's does, call by call.
 #include "FuzzTools.h"
 
 #include <vtkCompressedVolumeBuilder.h>

@@ -1,14 +1,15 @@
 # Defines the target progiso_zfp: zfp's C library as a private static library, with OpenMP.
 #
-# Not the system's libzfp: inside ParaView, libcfitsio (loaded through GDAL) exports stream_open and
-# friends, which would shadow libzfp's. Hidden visibility and --exclude-libs keep ours to ourselves.
-# The sources are those in the sdist of PyPI's zfpy; -DPROGISO_ZFP_SOURCE_DIR=DIR takes others.
+# The system's libzfp would not do: inside ParaView, libcfitsio (loaded through GDAL) exports
+# stream_open and other functions that would shadow libzfp's. Hidden visibility and --exclude-libs
+# keep our copy's symbols private. The sources come from the sdist of PyPI's zfpy, unless
+# -DPROGISO_ZFP_SOURCE_DIR=DIR names others.
 
 set(PROGISO_ZFP_SOURCE_DIR "" CACHE PATH "zfp 1.0 sources (with include/zfp.h); empty: fetch them")
 set(_version 1.0.1)
 set(_sha256 75c7014bdb2ad497a08846aaadca6d13de7c154a541c42557e52ec42030ca926)
 
-# Runs COMMAND with the surrounding build's Python settings out of the way; stops with its output on failure.
+# Runs COMMAND without the Python settings of the surrounding build. Stops with its output on failure.
 function (_progiso_run what)
   execute_process(
     COMMAND "${CMAKE_COMMAND}" -E env --unset=PYTHONPATH --unset=PYTHONHOME
@@ -22,8 +23,8 @@ function (_progiso_run what)
   endif ()
 endfunction ()
 
-# Downloads and unpacks the sdist into DIR, in a throw-away environment: pip asks an sdist's setup.py for
-# its metadata even when it only downloads, and zfpy's needs Cython and NumPy for that.
+# Downloads and unpacks the sdist into DIR, in a temporary environment: pip runs an sdist's setup.py
+# for its metadata even when it only downloads, and zfpy's setup.py needs Cython and NumPy.
 function (_progiso_fetch_zfp dir)
   set(env "${dir}/venv")
   set(sdist "${dir}/zfpy-${_version}.tar.gz")
@@ -58,17 +59,15 @@ endif ()
 find_package(OpenMP REQUIRED COMPONENTS C)
 file(GLOB _sources "${_zfp}/src/*.c")
 add_library(progiso_zfp STATIC ${_sources})
-# this folder last: its zfp/bitstream.inl stands in for the one that the sdist leaves out
+# The sdist lacks zfp/bitstream.inl. Ours comes last, so that a full source tree uses its own.
 target_include_directories(progiso_zfp
   PUBLIC "$<BUILD_INTERFACE:${_zfp}/include>"
   PRIVATE "${_zfp}/src" "${CMAKE_CURRENT_LIST_DIR}")
-# The sdist lacks zfp/bitstream.inl: ours stands in (after zfp's folders: a full source tree uses its own).
-target_include_directories(progiso_zfp PRIVATE "${CMAKE_CURRENT_LIST_DIR}")
 target_link_libraries(progiso_zfp PUBLIC OpenMP::OpenMP_C PRIVATE m)
-# by name: a sanitizer's library must show its symbols
+# Excludes this library by name, because a sanitizer's library must export its symbols.
 target_link_options(progiso_zfp INTERFACE "LINKER:--exclude-libs,libprogiso_zfp.a")
-# Streams of arbitrary bits make zfp's inverse transform overflow: let it wrap, as on the GPU.
-# Most of the encoder's time is a loop over the 64 coefficients of a block: unrolled, it takes a fifth less.
+# -fwrapv: streams of arbitrary bits overflow zfp's inverse transform, which must wrap as on the GPU.
+# -funroll-loops: saves a fifth of the encoder's time, most of which is a loop over 64 coefficients.
 target_compile_options(progiso_zfp PRIVATE "$<$<C_COMPILER_ID:GNU,Clang,AppleClang>:-fwrapv;-funroll-loops>")
 set_target_properties(progiso_zfp PROPERTIES
   C_VISIBILITY_PRESET hidden
