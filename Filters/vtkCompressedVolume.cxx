@@ -2,15 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkCompressedVolume.h"
 
-#include "vtkDataSetAttributes.h"
+#include "Pieces/PieceExtents.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
-#include "vtkInformation.h"
 #include "vtkIntArray.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 #include "vtkTypeInt64Array.h"
 #include "vtkTypeUInt64Array.h"
@@ -139,13 +137,6 @@ bool IsBounded(vtkTypeInt64 low, vtkTypeInt64 high)
 {
   const vtkTypeInt64 most = vtkTypeInt64(1) << 30;
   return -most <= low && low <= most && -most <= high && high <= most;
-}
-
-//------------------------------------------------------------------------------
-bool Contains(const int outer[6], const int inner[6])
-{
-  return outer[0] <= inner[0] && inner[1] <= outer[1] && outer[2] <= inner[2] &&
-    inner[3] <= outer[3] && outer[4] <= inner[4] && inner[5] <= outer[5];
 }
 
 //------------------------------------------------------------------------------
@@ -410,7 +401,7 @@ std::string vtkCompressedVolume::CheckGeometry(vtkImageData* image)
       return message.str();
     }
   }
-  return Contains(this->Extent, own)
+  return PieceExtents::Contains(this->Extent, own)
     ? std::string()
     : "its stream is that of another piece (one compressed volume cannot be put together from "
       "several)";
@@ -547,65 +538,20 @@ void vtkCompressedVolume::Remove(vtkDataObject* object)
 //------------------------------------------------------------------------------
 bool vtkCompressedVolume::IsEmptyPiece(vtkInformation* input)
 {
-  vtkImageData* image = vtkImageData::GetData(input);
-  return image && image->GetNumberOfPoints() == 0 &&
-    input->Get(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
+  return PieceExtents::IsEmptyPiece(input);
 }
 
 //------------------------------------------------------------------------------
 void vtkCompressedVolume::GetOwnExtent(vtkImageData* image, int own[6])
 {
-  image->GetExtent(own);
-  vtkUnsignedCharArray* ghosts = image->GetCellGhostArray();
-  // marks of another image say nothing about this one
-  if (!ghosts || image->GetNumberOfPoints() <= 0 ||
-    ghosts->GetNumberOfValues() != image->GetNumberOfCells())
-  {
-    return;
-  }
-  const unsigned char* begin = ghosts->GetPointer(0);
-  const unsigned char* end = begin + ghosts->GetNumberOfValues();
-  const auto isOwn = [](unsigned char mark)
-  { return !(mark & vtkDataSetAttributes::DUPLICATECELL); };
-  const unsigned char* first = std::find_if(begin, end, isOwn);
-  if (first == end)
-  {
-    own[1] = own[0] - 1;
-    return;
-  }
-  const unsigned char* last = end - 1;
-  while (!isOwn(*last))
-  {
-    --last;
-  }
-  // not by vtkStructuredData, whose cells of a slice overflow 32 bits
-  vtkTypeInt64 low = first - begin, high = last - begin;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const vtkTypeInt64 start = own[2 * axis], most = own[2 * axis + 1];
-    const vtkTypeInt64 cells = std::max<vtkTypeInt64>(most - start, 1);
-    const auto place = std::minmax({ low % cells, high % cells }); // marks may be in disorder
-    own[2 * axis] = static_cast<int>(start + place.first);
-    own[2 * axis + 1] = static_cast<int>(std::min(start + place.second + 1, most));
-    low /= cells;
-    high /= cells;
-  }
+  PieceExtents::GetExtentWithoutGhosts(image, own);
 }
 
 //------------------------------------------------------------------------------
 void vtkCompressedVolume::GetCoveringExtent(
   const int own[6], const int whole[6], int association, int covering[6])
 {
-  const int cells = association == CellData ? 1 : 0;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const int begin = whole[2 * axis];
-    // with cell data the sample at own's upper face is the next piece's first
-    const int low = std::max(own[2 * axis] - 1 - begin, 0) / 4 * 4;
-    const int high = (own[2 * axis + 1] + 1 - begin) / 4 * 4 + 3 + cells;
-    covering[2 * axis] = begin + low;
-    covering[2 * axis + 1] = std::min(begin + high, whole[2 * axis + 1]);
-  }
+  PieceExtents::GetCoveringExtent(own, whole, association == CellData, covering);
 }
 
 //------------------------------------------------------------------------------
