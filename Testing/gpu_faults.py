@@ -12,14 +12,14 @@ import subprocess
 import sys
 
 import numpy as np
-from progiso.benchmarks.fields import compressed, parse_field
-from progiso.benchmarks.machine import gpu_bytes
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_FLOAT
 from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow, vtkWindowToImageFilter
 from vtkmodules.vtkRenderingOpenGL2 import vtkTextureObject
 
 import progiso
+from progiso.bench.fields import compressed, parse_field
+from progiso.measure.machine import gpu_bytes
 
 # Takes memory in ever smaller pieces until there is none, and holds it until its input ends.
 HOLD = """

@@ -53,13 +53,12 @@ choose_window()
 from .camera import Camera, orbit_camera, view_camera  # noqa: E402
 from .compression import compress, decompress, describe, is_compressed  # noqa: E402
 from .geometry import image_from_array  # noqa: E402
-from .io import compress_file, read, save  # noqa: E402
+from .io import compress_file, compress_slabs, read, save  # noqa: E402
 from .isosurface import make_isosurface  # noqa: E402
+from .mesh import contour, save_surface  # noqa: E402
 from .rates import least_rate  # noqa: E402
-from .render import RenderResult, render, write_png  # noqa: E402
-from .slabs import compress_slabs  # noqa: E402
+from .rendering import RenderResult, render, write_png  # noqa: E402
 from .statistics import depth, statistics  # noqa: E402
-from .surface import contour, save_surface  # noqa: E402
 from .vtkProgIsoFilters import (  # noqa: E402
     vtkCompressedVolume,
     vtkCompressedVolumeBuilder,
@@ -116,11 +115,11 @@ __all__ = [
 def __getattr__(name):
     """Import what needs pyvista when it is asked for."""
     if name == "add_isosurface":
-        from .pyvista_plugin import add_isosurface
+        from .pyvista.plugin import add_isosurface
 
         return add_isosurface
     raise AttributeError(f"module 'progiso' has no attribute '{name}'")
 
 
 # The plugin registers itself with pyvista when it is imported.
-after_import("pyvista", lambda: import_module(f"{__name__}.pyvista_plugin"))
+after_import("pyvista", lambda: import_module(f"{__name__}.pyvista.plugin"))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from ._vtk import image_data
@@ -52,6 +52,24 @@ def image_from_array(values, dimensions, name="scalars", components=1):
     image.SetDimensions([int(n) for n in dimensions])
     image.GetPointData().SetScalars(array)
     return image
+
+
+def samples_of(image):
+    """View an image's active scalars as an array; the inverse of `image_from_array`.
+
+    Parameters
+    ----------
+    image : vtkmodules.vtkCommonDataModel.vtkImageData
+        With scalars of one component at its points, or else at its cells.
+
+    Returns
+    -------
+    numpy.ndarray, shape (depth, height, width)
+        A view, z slowest.
+    """
+    points = image.GetPointData().GetScalars()
+    size = np.array(image.GetDimensions()) - (0 if points else 1)
+    return vtk_to_numpy(points or image.GetCellData().GetScalars()).reshape(size[::-1])
 
 
 def as_image(volume):

@@ -4,9 +4,9 @@ import sys
 from pathlib import Path
 
 import pyvista as pv
-from progiso.data import compressed
 
 import progiso
+from progiso.data import compressed
 
 
 def draw(size=(640, 480), samples=512):

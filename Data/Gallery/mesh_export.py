@@ -5,9 +5,9 @@ import tempfile
 from pathlib import Path
 
 import pyvista as pv
-from progiso.data import fetch
 
 import progiso
+from progiso.data import fetch
 
 
 def draw(size=(800, 400), samples=32):

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pyvista as pv
-from progiso.data import fetch
 
 import progiso
+from progiso.data import fetch
 
 
 def draw(size=(800, 640)):

@@ -4,9 +4,9 @@ import sys
 from pathlib import Path
 
 import pyvista as pv
-from progiso.data import fetch
 
 import progiso
+from progiso.data import fetch
 
 
 def draw(size=(640, 480)):

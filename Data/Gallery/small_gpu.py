@@ -4,9 +4,9 @@ import sys
 from pathlib import Path
 
 import pyvista as pv
-from progiso.data import compressed
 
 import progiso
+from progiso.data import compressed
 
 
 def draw(size=(800, 400), samples=512, budget=24 * 2**20):

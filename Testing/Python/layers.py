@@ -1,7 +1,8 @@
 """What a translucent picture should be: layers of isosurfaces blended front to back along the caster's rays."""
 
 import numpy as np
-from oracle.caster import cast_all
+
+from progiso.oracle.caster import cast_all
 
 
 def places(crossings, volume, camera, size):

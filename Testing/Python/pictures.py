@@ -3,10 +3,11 @@
 import pathlib
 
 import numpy as np
-import tolerances
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
+
+from progiso.measure import tolerances
 
 BASELINES = pathlib.Path(__file__).parent / "baselines"
 

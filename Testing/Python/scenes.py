@@ -4,15 +4,15 @@ import itertools
 import re
 
 import numpy as np
-import tolerances
-from oracle.caster import Camera, cast
-from progiso.verification.agreement import compare
 from support import reference_volume, vtk_messages
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow, vtkWindowToImageFilter
 
 from progiso import depth, statistics, vtkIsosurfaceVolume, vtkProgressiveIsosurfaceMapper
+from progiso.measure import tolerances
+from progiso.measure.agreement import compare
+from progiso.oracle.caster import Camera, cast
 
 MANY_RENDERS = 5000
 
@@ -28,7 +28,7 @@ class Scene:
     image : vtkImageData
         plain or compressed.
     isovalue : float
-    camera : oracle.caster.Camera
+    camera : progiso.oracle.caster.Camera
     size : (int, int)
     user_matrix : 4x4 array
     lit : bool
@@ -168,7 +168,7 @@ def check_scene(
 
 
 def check_depth(depth, expected, grazing=tolerances.GRAZING_FRACTION):
-    """Hold a depth image against a `Cast`, see `progiso.verification.agreement`; not too many rays may graze."""
+    """Hold a depth image against a `Cast`, see `progiso.measure.agreement`; not too many rays may graze."""
     assert depth.dtype == np.float32 and depth.shape == expected.depth.shape
     found = compare(depth, expected)
     wrong = found.wrong

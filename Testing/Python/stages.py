@@ -1,7 +1,6 @@
 """Scenes that either mapper can draw, ours or VTK's own isosurface mapper, and how their pictures are compared."""
 
 import numpy as np
-import tolerances
 from scenes import orbit
 from support import reference_volume
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -19,6 +18,7 @@ from vtkmodules.vtkRenderingVolumeOpenGL2 import vtkOpenGLGPUVolumeRayCastMapper
 
 import progiso
 from progiso import vtkIsosurfaceVolume, vtkProgressiveIsosurfaceMapper
+from progiso.measure import tolerances
 
 SIZE = (160, 128)
 BACKGROUND = (0.2, 0.3, 0.4)

@@ -3,11 +3,13 @@
 import contextlib
 
 import numpy as np
-from oracle import zfp_reference
-from oracle.caster import Volume
-from progiso.verification.fields import blobs, make_image, marschner_lobb, noise, values_of  # noqa: F401 (for all tests)
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
+
+from progiso.geometry import samples_of  # noqa: F401 (for all tests)
+from progiso.oracle import zfp_reference
+from progiso.oracle.caster import Volume
+from progiso.verify.fields import blobs, make_image, marschner_lobb, noise  # noqa: F401 (for all tests)
 
 PREFIX = "ProgIso.ZFP."
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support import blobs, make_image, reference_values, same_bits, values_of
+from support import blobs, make_image, reference_values, same_bits, samples_of
 
 import progiso
 
@@ -52,7 +52,7 @@ def test_contour_render_and_save(image, tmp_path):
         == progiso.make_isosurface(image, 0.1).GetBounds()
     )
     progiso.save(array, tmp_path / "array.vti")
-    assert np.array_equal(values_of(progiso.read(tmp_path / "array.vti")), FIELD)
+    assert np.array_equal(samples_of(progiso.read(tmp_path / "array.vti")), FIELD)
 
 
 @pytest.mark.parametrize(

@@ -9,27 +9,27 @@ import sys
 
 import numpy as np
 import pytest
-import tolerances
-from oracle.caster import Camera, Volume, cast
-from progiso.benchmarks import goals
-from progiso.benchmarks.document import load_document, merge
-from progiso.benchmarks.explicit import BlockRanges
-from progiso.benchmarks.fields import parse_field
-from progiso.benchmarks.literature import GPU
-from progiso.benchmarks.mesh import Mesh, extract
-from progiso.benchmarks.report import markdown
-from progiso.benchmarks.settings import PEERS, Settings
-from progiso.benchmarks.soak import growth
-from progiso.benchmarks.topology import topology
-from progiso.benchmarks.view import opposite, turned
-from progiso.benchmarks.volume_mapper import VolumeMapper
-from progiso.data import fetch
-from progiso.verification.agreement import depth_error
 from support import blobs, make_image, noise
 from test_cli import call
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import progiso
+from progiso.bench import goals
+from progiso.bench.explicit import BlockRanges
+from progiso.bench.fields import parse_field
+from progiso.bench.literature import GPU
+from progiso.bench.report import markdown
+from progiso.bench.settings import PEERS, Settings
+from progiso.bench.soak import growth
+from progiso.bench.volume_mapper import VolumeMapper
+from progiso.data import fetch
+from progiso.measure import tolerances
+from progiso.measure.agreement import depth_error
+from progiso.measure.document import load_document, merge
+from progiso.measure.mesh import Mesh, extract
+from progiso.measure.topology import topology
+from progiso.measure.view import opposite, turned
+from progiso.oracle.caster import Camera, Volume, cast
 
 TINY = ("--fields", "gyroid-24-k2-r8", "--size", "64x48", "--positions", 2)
 KINDS = {

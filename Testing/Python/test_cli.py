@@ -8,8 +8,6 @@ import sys
 
 import numpy as np
 import pytest
-import tolerances
-from oracle.caster import Camera, cast
 from pictures import read_png
 from scenes import check_depth, orbit
 from support import (
@@ -19,11 +17,13 @@ from support import (
     reference_values,
     reference_volume,
     same_bits,
-    values_of,
+    samples_of,
 )
 from test_statistics import check_memory
 
 import progiso
+from progiso.measure import tolerances
+from progiso.oracle.caster import Camera, cast
 
 
 def run(folder, *arguments):
@@ -62,7 +62,7 @@ def test_compress_is_the_librarys(folder):
 def test_decompress(folder):
     call(folder, "decompress", "packed.vti", "unpacked.vti")
     assert same_bits(
-        values_of(progiso.read(folder / "unpacked.vti")),
+        samples_of(progiso.read(folder / "unpacked.vti")),
         reference_values(progiso.read(folder / "packed.vti")),
     )
 
@@ -332,7 +332,7 @@ def gyroid(n, k):
 def test_gyroid_is_as_defined(tmp_path):
     from progiso.data import fetch
 
-    values = values_of(progiso.read(fetch("gyroid", folder=tmp_path, size=40, k=6)))
+    values = samples_of(progiso.read(fetch("gyroid", folder=tmp_path, size=40, k=6)))
     assert np.abs(values - gyroid(40, 6)).max() < 1e-5
 
 
@@ -347,6 +347,6 @@ def test_generators_make_what_can_be_shown(folder):
         done = subprocess.run(
             command, cwd=folder, env=environment, capture_output=True, text=True, check=True
         )
-        values = values_of(progiso.read(done.stdout.strip()))
+        values = samples_of(progiso.read(done.stdout.strip()))
         assert values.shape == (24, 24, 24)
         assert values.min() < generator.isovalues[0] < values.max()

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from oracle.caster import Camera
 from scenes import CACHED, Scene
 from support import blobs, make_image, vtk_messages
 from vtkmodules.util.numpy_support import numpy_to_vtk
@@ -10,6 +9,7 @@ from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction
 
 import progiso
+from progiso.oracle.caster import Camera
 
 N, RADIUS, SIZE = 40, 14.0, (120, 100)
 CENTER = (N - 1) / 2

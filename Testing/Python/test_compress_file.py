@@ -16,8 +16,8 @@ from support import PEAK, blobs, make_image, stream_of
 from test_slabs import check_same
 
 import progiso
-import progiso.io
-from progiso import slab_files
+import progiso.io.volumes
+from progiso.io import slab_files
 
 SHAPE = (13, 7, 9)  # slices, rows, columns
 
@@ -182,7 +182,7 @@ def test_equals_reading_whole(case, tmp_path, monkeypatch):
     image = progiso.read(path)
     expected = progiso.compress(image, 6, component=component)
     assert np.ptp(np.array(progiso.describe(expected)["range"])) > 10
-    monkeypatch.setattr(progiso.io, "read", None)
+    monkeypatch.setattr(progiso.io.volumes, "read", None)
     for slab_bytes in (1, 9 * 7 * 2 * 8, 2**25):
         monkeypatch.setattr(slab_files, "_SLAB_BYTES", slab_bytes)
         volume = progiso.compress_file(path, 6, component=component)
@@ -395,14 +395,14 @@ def test_interrupted_writing_keeps_what_was_there(kind, tmp_path, monkeypatch):
     target = tmp_path / f"out{kind}"
     target.write_text("before")
     source = write_raw(tmp_path, "int16")
-    writing = progiso.io._write_with
+    writing = progiso.io.volumes._write_with
 
     def interrupt(writer, path):
         writing(writer, path)
         assert path.stat().st_size > 0
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(progiso.io, "_write_with", interrupt)
+    monkeypatch.setattr(progiso.io.volumes, "_write_with", interrupt)
     assert cli.main(command(source, target)[3:]) == 130
     assert target.read_text() == "before"
     assert sorted(p.name for p in tmp_path.iterdir()) == sorted([source.name, target.name])

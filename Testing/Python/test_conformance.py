@@ -5,9 +5,7 @@ import re
 
 import numpy as np
 import pytest
-import tolerances
 from layers import blend, capped, crossings_of
-from oracle.caster import Camera
 from stages import (
     BACKGROUND,
     SIZE,
@@ -45,6 +43,8 @@ from vtkmodules.vtkRenderingOpenGL2 import (
 )
 
 import progiso
+from progiso.measure import tolerances
+from progiso.oracle.caster import Camera
 
 RED, GREEN, BLUE = (0.9, 0.2, 0.1), (0.2, 0.8, 0.3), (0.3, 0.4, 1.0)
 OPAQUE = {0.1: (*GREEN, 1.0)}

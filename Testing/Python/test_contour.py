@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from progiso.data import SCANS, fetch
-from support import blobs, make_image, marschner_lobb, metadata, noise, values_of, vtk_messages
+from support import blobs, make_image, marschner_lobb, metadata, noise, samples_of, vtk_messages
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkSMPTools
 from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
@@ -17,6 +16,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 import progiso
 from progiso import vtkZFPContour
+from progiso.data import SCANS, fetch
 
 ROTATION = np.linalg.qr(np.random.default_rng(0).normal(size=(3, 3)))[0]
 
@@ -395,7 +395,7 @@ def test_errors_are_one_line(tmp_path, case):
 def test_values_survive_the_round_trip():
     """The surface lies where the decoded samples say: every point's interpolated value is the isovalue."""
     volume = progiso.compress(make_image(blobs((24, 25, 26), 7)), 6)
-    values = values_of(progiso.decompress(volume))
+    values = samples_of(progiso.decompress(volume))
     points = vtk_to_numpy(contoured(volume, [0.2], 8).GetPoints().GetData()).astype(float)
     low = np.floor(points).astype(int)
     part = points - low

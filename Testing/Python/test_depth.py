@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-import tolerances
-from oracle.caster import Camera, cast
 from scenes import Scene, check_depth, check_scene, orbit
 from support import blobs, make_image, marschner_lobb, noise, reference_volume
 
 import progiso
+from progiso.measure import tolerances
+from progiso.oracle.caster import Camera, cast
 
 rotation = np.linalg.qr(np.random.default_rng(8).normal(size=(3, 3)))[0]
 rotation *= np.linalg.det(rotation)

@@ -2,11 +2,9 @@
 
 import numpy as np
 import pytest
-import tolerances
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from layers import crossings_of, places
-from oracle.caster import Camera
 from scenes import CACHED, Scene, least_budget, orbit
 from support import (
     blobs,
@@ -16,8 +14,8 @@ from support import (
     reference_values,
     reference_volume,
     same_bits,
+    samples_of,
     stream_of,
-    values_of,
     vtk_messages,
 )
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -28,6 +26,8 @@ from vtkmodules.vtkRenderingCore import vtkLight
 
 import progiso
 from progiso import vtkCompressedVolume, vtkImageZFPCompress
+from progiso.measure import tolerances
+from progiso.oracle.caster import Camera
 
 HIDDEN_POINT, HIDDEN_CELL = vtkDataSetAttributes.HIDDENPOINT, vtkDataSetAttributes.HIDDENCELL
 REFINED_CELL = vtkDataSetAttributes.REFINEDCELL
@@ -273,7 +273,7 @@ def test_all_of_it_hidden():
     image = progiso.compress(make_image(np.full(SHAPE, np.nan, np.float32)), 8, mask_nan=True)
     assert progiso.describe(image)["range"] == [0, 0]
     assert not np.isfinite(Scene(image, 0, Camera((14, 14, 90), (14, 14, 12)), SIZE).depth()).any()
-    assert np.isnan(values_of(progiso.decompress(image))).all()
+    assert np.isnan(samples_of(progiso.decompress(image))).all()
 
 
 # --- compression -------------------------------------------------------------------------------------------------------------
@@ -297,7 +297,7 @@ def test_round_trip(shape, start, share, rate, cells, seed):
     others = None if cells else speckles(fewer(shape), share, seed + 1)
     volume = progiso.compress(blank(image, cells=others), rate, mask_nan=True)
     back = progiso.decompress(volume)
-    values = values_of(back)
+    values = samples_of(back)
     assert np.array_equal(np.isnan(values), samples)
     seen = ~samples
     assert same_bits(values[seen], reference_values(volume)[seen])
@@ -335,9 +335,9 @@ def test_hidden_values_cost_nothing():
     for filling in (np.nan, 1e30, 0):
         image = blank(make_image(np.where(hidden, np.float32(filling), values)), hidden)
         volume = progiso.compress(image, 6)
-        errors.append(np.abs(values_of(progiso.decompress(volume)) - values)[~hidden].max())
+        errors.append(np.abs(samples_of(progiso.decompress(volume)) - values)[~hidden].max())
         assert progiso.describe(volume)["range"] == [values[~hidden].min(), values[~hidden].max()]
-    whole = values_of(progiso.decompress(progiso.compress(make_image(values), 6)))
+    whole = samples_of(progiso.decompress(progiso.compress(make_image(values), 6)))
     assert errors[0] == errors[1] == errors[2] <= 3 * np.abs(whole - values).max()
 
 
@@ -366,7 +366,7 @@ def test_a_piece_takes_its_part_of_the_mask():
     read.Write(piece)
     inside = tuple(slice(extent[2 * axis], extent[2 * axis + 1] + 1) for axis in (2, 1, 0))
     part, whole = progiso.decompress(piece), progiso.decompress(volume)
-    assert np.array_equal(values_of(part), values_of(whole)[inside], equal_nan=True)
+    assert np.array_equal(samples_of(part), samples_of(whole)[inside], equal_nan=True)
     flags = [
         vtk_to_numpy(i.GetCellData().GetArray("vtkGhostType")).reshape(
             np.array(i.GetDimensions()[::-1]) - 1
@@ -386,8 +386,8 @@ def test_files(tmp_path):
     reader.SetFileName(str(tmp_path / "hole.vti"))
     reader.Update()
     assert np.array_equal(
-        values_of(progiso.decompress(reader.GetOutput())),
-        values_of(progiso.decompress(volume)),
+        samples_of(progiso.decompress(reader.GetOutput())),
+        samples_of(progiso.decompress(volume)),
         equal_nan=True,
     )
     with pytest.raises((RuntimeError, OSError), match="hidden"):

@@ -6,8 +6,6 @@ import sys
 
 import numpy as np
 import pytest
-from oracle import zfp_reference
-from oracle.caster import Camera
 from scenes import CACHED, Scene, least_budget
 from support import PREFIX, blobs, make_image, metadata, noise, reference_values, vtk_messages
 from test_decode import check, window  # noqa: F401 (a fixture)
@@ -15,6 +13,8 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLookupTable
 
 import progiso
+from progiso.oracle import zfp_reference
+from progiso.oracle.caster import Camera
 
 SHAPE = (36, 40, 44)
 CAMERA = Camera((90.0, 70.0, 110.0), (21.5, 19.5, 17.5), view_angle=30.0)

@@ -4,7 +4,6 @@ import collections
 
 import numpy as np
 import pytest
-from oracle.caster import Camera
 from scenes import CACHED, Scene, least_budget, orbit
 from support import (
     blobs,
@@ -17,6 +16,7 @@ from support import (
 )
 
 import progiso
+from progiso.oracle.caster import Camera
 
 # large enough that the smallest cache does not hold them
 FIELDS = {

@@ -6,7 +6,7 @@ from support import make_image
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction, vtkRenderer, vtkRenderWindow
 
 import progiso
-from progiso.render import window_pixels
+from progiso.rendering import window_pixels
 
 SIZE = 101
 RED, GREEN, BLUE = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)

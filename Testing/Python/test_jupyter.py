@@ -9,7 +9,8 @@ import sys
 
 import numpy as np
 import pytest
-import tolerances
+
+from progiso.measure import tolerances
 
 pyvista = pytest.importorskip("pyvista")
 

@@ -2,15 +2,15 @@
 
 import numpy as np
 import pytest
-import tolerances
 from layers import blend, crossings_of
-from oracle.caster import Camera
 from scenes import CACHED
 from stages import BACKGROUND, SIZE, Stage
 from support import blobs, make_image, noise, reference_volume, vtk_messages
 from test_conformance import CENTRE, NESTED, PLANES, REGIONS, ball, show
 
 import progiso
+from progiso.measure import tolerances
+from progiso.oracle.caster import Camera
 
 FIELDS = {
     "blobs": (lambda: blobs((24, 32, 28), 12, waves=2), NESTED),

@@ -6,9 +6,6 @@ import threading
 
 import numpy as np
 import pytest
-import tolerances
-from progiso.benchmarks.machine import resident_bytes
-from progiso.benchmarks.soak import growth
 from scenes import CACHED
 from stages import Stage
 from support import blobs, make_image
@@ -18,6 +15,9 @@ from test_paraview import under_x
 from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
 import progiso
+from progiso.bench.soak import growth
+from progiso.measure import tolerances
+from progiso.measure.machine import resident_bytes
 
 MAPPERS, VOLUMES, FRAMES = 200, 50, 12
 

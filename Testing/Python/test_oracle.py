@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-import tolerances
-from oracle.caster import Camera, Slack, Volume, cast, cast_rays
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkRenderingCore import vtkCamera
+
+from progiso.measure import tolerances
+from progiso.oracle.caster import Camera, Slack, Volume, cast, cast_rays
 
 
 def sample(values, points):

@@ -5,9 +5,10 @@ import json
 import numpy as np
 import pictures
 import pytest
-import tolerances
 from support import blobs, make_image
 from test_paraview import HERE, WARNINGS, build, under_x  # noqa: F401 (build is a fixture)
+
+from progiso.measure import tolerances
 
 pytestmark = pytest.mark.paraview
 

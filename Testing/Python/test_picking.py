@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 from layers import crossings_of, to_index
-from oracle.caster import Camera
 from stages import SIZE, Stage
 from support import blobs, make_image, reference_volume
 from test_conformance import GREEN, NESTED, OPAQUE, RED, SHAPE, TURNED, ball, show, wall
@@ -21,6 +20,7 @@ from vtkmodules.vtkRenderingCore import (
 from vtkmodules.vtkRenderingVolume import vtkVolumePicker
 
 import progiso
+from progiso.oracle.caster import Camera
 
 PIXELS = [(x, y) for x in range(3, SIZE[0], 13) for y in range(2, SIZE[1], 11)]
 

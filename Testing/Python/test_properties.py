@@ -11,15 +11,15 @@ import sys
 
 import numpy as np
 import pytest
-import tolerances
 from hypothesis import given
 from hypothesis import strategies as st
-from oracle.caster import Camera, Volume, cast
-from progiso.verification import cracks
 from scenes import CACHED, Scene, check_depth, least_budget
-from support import blobs, make_image, noise, reference_values, values_of
+from support import blobs, make_image, noise, reference_values, samples_of
 
 import progiso
+from progiso.measure import tolerances
+from progiso.oracle.caster import Camera, Volume, cast
+from progiso.verify import cracks
 
 SIZE = (96, 64)
 
@@ -184,7 +184,7 @@ def padded(values, before, after):
 def lossless(plain):
     """Compress samples so that they stay what they are."""
     image = progiso.compress(plain, 32)
-    assert np.array_equal(reference_values(image), values_of(plain))
+    assert np.array_equal(reference_values(image), samples_of(plain))
     return image
 
 
@@ -274,7 +274,7 @@ def test_a_hole_shows(kind):
     hole = field.values.copy()
     hole[field.skin & (np.arange(20) > field.high[0])] = 1.0  # the whole side
     image = progiso.compress(make_image(hole), 32)
-    assert not field.is_closed(values_of(progiso.decompress(image)))
+    assert not field.is_closed(samples_of(progiso.decompress(image)))
     camera = cracks.camera_inside(field, rng)
     camera = Camera(camera.position, np.add(camera.position, (1, 0, 0)), view_angle=100)
     depth = Scene(image, cracks.ISOVALUE, camera, SIZE).depth(cracks.CLIPPING_INSIDE)

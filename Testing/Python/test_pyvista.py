@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from pictures import check_picture
-from support import blobs, marschner_lobb, reference_values, same_bits, values_of
+from support import blobs, marschner_lobb, reference_values, same_bits, samples_of
 
 import progiso
 
@@ -48,7 +48,7 @@ def test_accessor():
     assert compressed.progiso.is_compressed and not image.progiso.is_compressed
     assert compressed.progiso.info["rate"] == 4
     restored = compressed.progiso.decompress()
-    assert same_bits(values_of(restored), reference_values(compressed))
+    assert same_bits(samples_of(restored), reference_values(compressed))
     assert restored.active_scalars_name == "field" and restored.spacing == (1, 2, 3)
 
 

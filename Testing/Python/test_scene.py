@@ -4,8 +4,6 @@ import ctypes
 
 import numpy as np
 import pytest
-import tolerances
-from oracle.caster import Camera, cast
 from scenes import CACHED, Scene, orbit
 from support import blobs, make_image, noise, reference_volume, vtk_messages
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -21,6 +19,8 @@ from vtkmodules.vtkRenderingCore import (
 )
 
 import progiso
+from progiso.measure import tolerances
+from progiso.oracle.caster import Camera, cast
 
 SIZE = (160, 120)
 ISOVALUE = 0.1

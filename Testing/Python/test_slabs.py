@@ -6,11 +6,11 @@ import sys
 
 import numpy as np
 import pytest
-from progiso.data import GENERATORS, compressed, fetch
 from support import PEAK, make_image, metadata, noise, stream_of
 
 import progiso
-from progiso.slabs import compute_slabs
+from progiso.data import GENERATORS, compressed, fetch
+from progiso.io.slabs import compute_slabs
 
 METADATA = ("Version", "BlockBits", "Dimensions", "Range", "ScalarType", "Component", "Association")
 

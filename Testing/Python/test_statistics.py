@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-import tolerances
-from oracle.caster import Camera
 from scenes import CACHED, Scene, orbit
 from support import make_image, marschner_lobb, metadata, noise, reference_volume, stream_of
 from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction, vtkPlane
 
 import progiso
+from progiso.measure import tolerances
+from progiso.oracle.caster import Camera
 from progiso.statistics import PASS_KEYS
 
 

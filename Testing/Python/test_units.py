@@ -3,15 +3,14 @@ test_filters.py and the rows of test_verify.py)."""
 
 import numpy as np
 import pytest
-import tolerances
 from scenes import CACHED, Scene, orbit
 from support import (
     blobs,
     make_image,
     metadata,
     reference_volume,
+    samples_of,
     stream_of,
-    values_of,
     vtk_messages,
 )
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -21,6 +20,7 @@ from vtkmodules.vtkRenderingCore import vtkColorTransferFunction
 
 import progiso
 from progiso import vtkCompressedVolume, vtkCompressedVolumeBuilder
+from progiso.measure import tolerances
 
 OFFSET, SCALE = 1e6, 2.0**-10
 SHAPE = (20, 24, 28)
@@ -141,7 +141,7 @@ def test_files(shifted, tmp_path):
     progiso.save(shifted, tmp_path / "shifted.vti")
     again = progiso.read(tmp_path / "shifted.vti")
     assert np.array_equal(
-        values_of(progiso.decompress(again)), values_of(progiso.decompress(shifted))
+        samples_of(progiso.decompress(again)), samples_of(progiso.decompress(shifted))
     )
     with pytest.raises(RuntimeError, match="units"):
         progiso.save(shifted, tmp_path / "shifted.zfp")

@@ -6,13 +6,14 @@ import re
 
 import numpy as np
 import pytest
-from oracle.caster import Cast
-from progiso.verification import agreement, command, cracks, scene
-from progiso.verification.case import FAILED, LIMIT, OK, Case, Outcome, Settings, row_of, worst_of
-from progiso.verification.table import SECTIONS, cases
 from test_cli import call
 
 from progiso.cli import main
+from progiso.measure import agreement
+from progiso.oracle.caster import Cast
+from progiso.verify import command, cracks, scene
+from progiso.verify.case import FAILED, LIMIT, OK, Case, Outcome, Settings, row_of, worst_of
+from progiso.verify.table import SECTIONS, cases
 
 PLAIN = "plain: smooth field"
 KEYS = {"case", "verdict", "error", "limit", "time_ms"}

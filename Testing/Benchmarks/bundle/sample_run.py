@@ -16,7 +16,6 @@ import numpy as np
 import vtkmodules.vtkInteractionStyle  # noqa: F401
 import vtkmodules.vtkRenderingFreeType  # noqa: F401
 import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: F401
-from progiso.data import fetch
 from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction
 from vtkmodules.vtkFiltersCore import vtkContourFilter, vtkFlyingEdges3D, vtkPolyDataNormals
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
@@ -39,13 +38,14 @@ from vtkmodules.vtkRenderingVolume import vtkGPUVolumeRayCastMapper
 
 import progiso
 from progiso.cli import main
+from progiso.data import fetch
 
 
 def import_everything():
     """Import all modules of the package but those that want pyvista, which does not come along."""
     for module in pkgutil.walk_packages(progiso.__path__, "progiso."):
-        name = module.name.rsplit(".", 1)[-1]
-        if name != "__main__" and not name.startswith(("lib", "pyvista_")):
+        parts = module.name.split(".")
+        if "pyvista" not in parts and parts[-1] != "__main__" and not parts[-1].startswith("lib"):
             importlib.import_module(module.name)
     with contextlib.suppress(ImportError):
         import zfpy  # noqa: F401

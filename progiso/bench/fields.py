@@ -1,0 +1,268 @@
+"""The volumes that are measured, by names that say all: ``gyroid-512-k12-r4``, ``ct-cranium``."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Optional
+
+import numpy as np
+
+from ..compression import compress, decompress
+from ..data import GENERATORS, SCANS, cache_folder, fetch
+from ..data import compressed as fetch_compressed
+from ..data.generators import checked_dimensions
+from ..io import read, save
+
+_NAME = re.compile(
+    r"(?P<volume>[a-z]+(?:-[a-z]+)*)(?:-(?P<size>\d+(?:x\d+x\d+)?))?"
+    r"(?:-k(?P<k>\d+(?:\.\d+)?))?(?:-r(?P<rate>\d+(?:\.\d+)?))?"
+)
+
+#: Bits per sample where a name does not say.
+SCAN_RATE, GENERATED_RATE = 8.0, 4.0
+
+
+class TooLarge(RuntimeError):
+    """A volume cannot be made or held on this machine; the message says what it would take."""
+
+
+@dataclass(frozen=True)
+class Field:
+    """A volume and the rate it is compressed at.
+
+    Attributes
+    ----------
+    volume : str
+        One of `progiso.data.SCANS` or `progiso.data.GENERATORS`.
+    dimensions : tuple of int
+        Samples along x, y and z.
+    rate : float
+        Bits per sample.
+    k : float, optional
+        Frequency of a generated field that has one.
+    """
+
+    volume: str
+    dimensions: tuple
+    rate: float
+    k: Optional[float] = None
+
+    @property
+    def name(self):
+        """What the field is asked for and reported by."""
+        if self.volume in SCANS:
+            return f"{self.volume}-r{self.rate:g}"
+        x, y, z = self.dimensions
+        size = f"{x}" if x == y == z else f"{x}x{y}x{z}"
+        k = "" if self.k is None else f"-k{self.k:g}"
+        return f"{self.volume}-{size}{k}-r{self.rate:g}"
+
+    @property
+    def voxels(self):
+        """Number of samples."""
+        return int(np.prod(self.dimensions, dtype=object))
+
+    @property
+    def blocks(self):
+        """Number of 4³ blocks."""
+        return int(np.prod([-(-n // 4) for n in self.dimensions], dtype=object))
+
+    @property
+    def isovalues(self):
+        """Fixed isovalues, the most interesting first."""
+        if self.volume in SCANS:
+            return tuple(map(float, SCANS[self.volume].isovalues.values()))
+        return tuple(map(float, GENERATORS[self.volume].isovalues))
+
+    def random_isovalues(self, count, seed):
+        """Draw isovalues from the range of interest, which the fixed ones span.
+
+        Parameters
+        ----------
+        count : int
+            How many.
+        seed : int
+            Of the random numbers: the same gives the same isovalues.
+
+        Returns
+        -------
+        list of float
+        """
+        low, high = min(self.isovalues), max(self.isovalues)
+        return np.random.default_rng(seed).uniform(low, high, count).tolist()
+
+
+def parse_field(name):
+    """Make a field of its name.
+
+    Parameters
+    ----------
+    name : str
+        ``SCAN[-rRATE]`` or ``GENERATOR[-SIZE][-kK][-rRATE]``; by default 128 samples a side, the
+        generator's own frequency, and 8 bits per sample for scans, 4 for generated fields.
+
+    Returns
+    -------
+    Field
+
+    Raises
+    ------
+    ValueError
+        When there is no such volume, or it does not take what the name says.
+
+    Examples
+    --------
+    >>> parse_field("gyroid-256-r2").name
+    'gyroid-256-k6-r2'
+    """
+    match = _NAME.fullmatch(name)
+    volume = match["volume"] if match else name
+    if volume not in SCANS and volume not in GENERATORS:
+        known = ", ".join((*SCANS, *GENERATORS))
+        raise ValueError(f"no field '{name}': write NAME-SIZE-kK-rRATE, NAME one of {known}")
+    rate = float(match["rate"]) if match["rate"] else None
+    if rate is not None and not 0 < rate <= 32:
+        raise ValueError(f"no field '{name}': the rate must be in (0, 32] bits per sample")
+    if volume in SCANS:
+        if match["size"] or match["k"]:
+            raise ValueError(f"no field '{name}': a scan takes a rate only, as in {volume}-r8")
+        return Field(volume, SCANS[volume].dimensions, rate or SCAN_RATE)
+    sides = [int(n) for n in (match["size"] or "128").split("x")]
+    dimensions = checked_dimensions(sides[0] if len(sides) == 1 else sides)
+    return Field(volume, dimensions, rate or GENERATED_RATE, _frequency(name, volume, match["k"]))
+
+
+def _frequency(name, volume, text):
+    """The parameter k of a generator, checked."""
+    option = GENERATORS[volume].options.get("k")
+    if text is None:
+        return option.default if option else None
+    if option is None:
+        raise ValueError(f"no field '{name}': {volume} has no k")
+    if not option.low <= float(text) <= option.high:
+        raise ValueError(f"no field '{name}': k must be from {option.low:g} to {option.high:g}")
+    return float(text)
+
+
+def plain_path(field):
+    """File of the uncompressed volume, fetched or generated when it is not cached yet.
+
+    Parameters
+    ----------
+    field : Field
+
+    Returns
+    -------
+    pathlib.Path
+
+    Raises
+    ------
+    TooLarge
+        When there is no room on the disk for the samples.
+    """
+    if field.volume in SCANS:
+        return fetch(field.volume)
+    _check_disk(4 * field.voxels, "samples")
+    return fetch(field.volume, size=field.dimensions, **_options(field))
+
+
+def _options(field):
+    """Options of the field's generator."""
+    return {} if field.k is None else {"k": field.k}
+
+
+def _check_disk(needed, what):
+    free = shutil.disk_usage(cache_folder()).free
+    if needed > free:
+        raise TooLarge(f"its {what} take {gib(needed)} of disk, {gib(free)} are free")
+
+
+@lru_cache(maxsize=1)
+def plain(field):
+    """The uncompressed volume; a generated one is a memory map, not to be written to.
+
+    Parameters
+    ----------
+    field : Field
+
+    Returns
+    -------
+    vtkmodules.vtkCommonDataModel.vtkImageData
+
+    Raises
+    ------
+    TooLarge
+        As `plain_path`.
+    """
+    return read(plain_path(field))
+
+
+@lru_cache(maxsize=1)
+def compressed(field):
+    """The compressed volume; a generated one is made without its samples ever being there as a
+    whole.
+
+    Parameters
+    ----------
+    field : Field
+
+    Returns
+    -------
+    vtkmodules.vtkCommonDataModel.vtkImageData
+
+    Raises
+    ------
+    TooLarge
+        When there is no room on the disk.
+    """
+    if field.volume in SCANS:
+        return compress(plain(field), field.rate)
+    _check_disk(int(field.voxels * field.rate / 8), "bits")
+    return read(fetch_compressed(field.volume, field.dimensions, field.rate, **_options(field)))
+
+
+def save_compressed(field, folder):
+    """Write the compressed volume in the format that loads fastest.
+
+    Parameters
+    ----------
+    field : Field
+    folder : str or os.PathLike
+
+    Returns
+    -------
+    pathlib.Path
+        A ``.vti`` with its data appended.
+    """
+    path = Path(folder) / f"{field.name}.vti"
+    save(compressed(field), path, appended=True)
+    return path
+
+
+def decompressed(field):
+    """What the compressed volume holds, as float32 samples.
+
+    Parameters
+    ----------
+    field : Field
+
+    Returns
+    -------
+    vtkmodules.vtkCommonDataModel.vtkImageData
+    """
+    return decompress(compressed(field))
+
+
+def gib(count):
+    """A number of bytes for people.
+
+    Examples
+    --------
+    >>> gib(3 * 2**29)
+    '1.5 GiB'
+    """
+    return f"{count / 2**30:.1f} GiB"

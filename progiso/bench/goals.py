@@ -1,0 +1,238 @@
+"""What the project wants to reach, and whether a figure does.
+
+Every function takes measured figures and returns a `Verdict`, or None where no goal is set for
+that machine (see `machine.describe_machine`), field (its name, or its number of voxels) or image
+size (width and height in pixels). Times are in milliseconds, memory is in bytes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..measure.text import bytes_, milliseconds, number
+from .literature import GPU, SOFTWARE, literature
+
+HD = (1280, 720)
+PAPERS_LARGEST = (2048, 2048, 1920)
+
+#: Milliseconds on an NVIDIA H200 at 1280x720.
+COMPLETE_MS, COMPLETE_LARGEST_MS, FIRST_PASS_MS, FILE_MS = 10.0, 20.0, 3.0, 2000.0
+
+#: The paper's implementation takes at least so many times as long: as published, and with its
+#: sort replaced.
+FASTER_THAN_PAPER = {GPU: (50.0, 10.0), SOFTWARE: (10.0, 1.0)}
+
+#: A move of two degrees against the cold image; time over voxels; GPU memory beside payload and
+#: cache; and that of VTK's mapper on large volumes.
+MOVED, EXPONENT, BYTES_PER_BLOCK, BYTES_PER_PIXEL, MEMORY = 0.5, 0.15, 3, 40, 0.1
+
+#: Bytes that memory may grow by in a thousand frames: of the process, whose heap breaks up and
+#: whose driver has caches of its own; of the GPU, by its driver, which rounds to MiB; and by the
+#: mapper, which counts what it has.
+GROWTH = {"rss": 2**20, "gpu": 2**20, "mapper": 0}
+
+#: Part of the cores that others may keep busy while something is measured.
+QUIET = 0.05
+
+#: Samples from which on a volume counts as large.
+LARGE = 1024**3
+
+#: Beginnings of the names of the fields that shall be faster than VTK's mapper without a GPU.
+FASTER_WITHOUT_GPU = ("ct-cranium-", "mri-brain-", "gyroid-256-k6-")
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A figure beside its goal.
+
+    Attributes
+    ----------
+    what : str
+        What is judged.
+    measured, goal : str
+        The figure, and what it shall be.
+    met : bool
+    timed : bool, default: True
+        Whether times are judged, which other processes disturb.
+    """
+
+    what: str
+    measured: str
+    goal: str
+    met: bool
+    timed: bool = True
+
+
+def machine_kind(machine):
+    """`literature.GPU` or `literature.SOFTWARE`; None for a machine that has no goals of its own.
+
+    Parameters
+    ----------
+    machine : dict
+        See `machine.describe_machine`.
+    """
+    if "NVIDIA" in machine["gl"]:
+        return GPU
+    return SOFTWARE if "llvmpipe" in machine["gl"] and machine["cores"] <= 2 else None
+
+
+def is_busy(machine, record):
+    """Whether others kept the machine so busy that a record's times tell little.
+
+    Parameters
+    ----------
+    machine : dict
+    record : dict
+        With ``others_cores``, the cores that were busy for others (None where unknown).
+    """
+    return (record["others_cores"] or 0.0) > QUIET * machine["cores"]
+
+
+def _at_most(what, value, limit, show, note="", timed=True):
+    return Verdict(what, show(value), f"≤ {show(limit)}{note}", value <= limit, timed)
+
+
+def _on_gpu(machine, size):
+    return machine_kind(machine) == GPU and tuple(size) == HD
+
+
+def complete_image(machine, size, voxels, mean_ms):
+    """Mean time of a complete image."""
+    if not _on_gpu(machine, size):
+        return None
+    largest = PAPERS_LARGEST[0] * PAPERS_LARGEST[1] * PAPERS_LARGEST[2]
+    limit = COMPLETE_LARGEST_MS if voxels >= largest else COMPLETE_MS
+    return _at_most("complete image, mean", mean_ms, limit, milliseconds, f" ({GPU})")
+
+
+def first_pass(machine, size, mean_ms):
+    """Mean time to the first partial image."""
+    if not _on_gpu(machine, size):
+        return None
+    return _at_most("first pass, mean", mean_ms, FIRST_PASS_MS, milliseconds, f" ({GPU})")
+
+
+def file_to_image(machine, size, ms):
+    """Time from a file to the first image."""
+    if not _on_gpu(machine, size):
+        return None
+    return _at_most("file to first image", ms, FILE_MS, milliseconds, f" ({GPU})")
+
+
+def moved(cold_ms, moved_ms):
+    """Mean times of the cold image and after a move of two degrees."""
+    limit = MOVED * cold_ms
+    goal = f"≤ half of cold ({milliseconds(limit)})"
+    return Verdict("move by 2°", milliseconds(moved_ms), goal, moved_ms <= limit)
+
+
+def time_exponent(value):
+    """Exponent of time over voxels; None without one."""
+    return (
+        None if value is None else _at_most("time over voxels, exponent", value, EXPONENT, number)
+    )
+
+
+def per_block(value):
+    """Bytes of GPU memory that a block more takes beside its payload; None without a figure."""
+    if value is None:
+        return None
+    return _at_most("GPU bytes per block", value, BYTES_PER_BLOCK, number, timed=False)
+
+
+def per_pixel(value):
+    """Bytes of GPU memory that a pixel more takes; None without a figure."""
+    if value is None:
+        return None
+    return _at_most("GPU bytes per pixel", value, BYTES_PER_PIXEL, number, timed=False)
+
+
+def beside_payload(memory):
+    """Memory of `protocol.measure_protocol`, all that is neither payload nor cache."""
+    limit = BYTES_PER_BLOCK * memory["blocks"] + BYTES_PER_PIXEL * memory["pixels"]
+    note = f" ({BYTES_PER_BLOCK} a block, {BYTES_PER_PIXEL} a pixel)"
+    what = "GPU memory beside payload and cache"
+    return _at_most(what, memory["other_max"], limit, bytes_, note, timed=False)
+
+
+def within_budget(beside, budget):
+    """GPU memory beside the compressed stream against the budget that was set."""
+    return _at_most("GPU memory beside the stream", beside, budget, bytes_, timed=False)
+
+
+def memory_growth(what, key, bytes_per_frame):
+    """Growth of a sort of memory, see `soak.measure_soak`; None without a figure."""
+    if bytes_per_frame is None:
+        return None
+    grown, limit = 1000 * bytes_per_frame, GROWTH[key]
+    note = " in 1000 frames"
+    return Verdict(what, bytes_(grown), f"≤ {bytes_(limit)}{note}", grown <= limit, timed=False)
+
+
+def no_gl_errors(count):
+    """OpenGL's errors of a long run."""
+    return Verdict("OpenGL errors", str(count), "none", count == 0, timed=False)
+
+
+def against_mapper(machine, size, field, voxels, ours_ms, mapper_ms):
+    """Mean times of complete images, ours and of VTK's mapper."""
+    kind = machine_kind(machine)
+    without_gpu = kind == SOFTWARE and field.startswith(FASTER_WITHOUT_GPU)
+    large = kind == GPU and voxels >= LARGE
+    if tuple(size) != HD or not (without_gpu or large):
+        return None
+    what, limit = "complete image, against VTK's mapper", milliseconds(mapper_ms)
+    return Verdict(what, milliseconds(ours_ms), f"< VTK's mapper ({limit})", ours_ms < mapper_ms)
+
+
+def memory_against_mapper(machine, voxels, ours_bytes, mapper_bytes):
+    """Most GPU memory in use, ours and with VTK's mapper."""
+    if machine_kind(machine) != GPU or voxels < LARGE:
+        return None
+    limit = MEMORY * mapper_bytes
+    goal = f"≤ a tenth of VTK's mapper ({bytes_(limit)})"
+    return Verdict("GPU memory", bytes_(ours_bytes), goal, ours_bytes <= limit, timed=False)
+
+
+def against_paper(machine, field, size, mean_ms):
+    """Mean time of a complete image against the paper's implementation: a list of verdicts."""
+    kind = machine_kind(machine)
+    figure = literature(kind, field, size)
+    if figure is None:
+        return []
+    variants = ("the paper's implementation", "the same with its sort replaced")
+    times = zip(variants, (figure.ms, figure.strong_ms), FASTER_THAN_PAPER[kind])
+    return [
+        Verdict(
+            f"complete image, against {variant}",
+            f"{number(theirs / mean_ms)} times as fast",
+            f"≥ {number(factor)} times as fast as {variant} ({kind})",
+            theirs >= factor * mean_ms,
+        )
+        for variant, theirs, factor in times
+        if theirs is not None
+    ]
+
+
+def error_against_mapper(field, ours, mapper):
+    """Whether some rate is faster than VTK's mapper at no larger mean depth error.
+
+    Parameters
+    ----------
+    field : str
+    ours : sequence of dict
+        The points of the rates, see `errors.measure_errors`.
+    mapper : dict
+        The point of VTK's default sample distance.
+    """
+    if not field.startswith(FASTER_WITHOUT_GPU):
+        return None
+    good = [p for p in ours if p["mean"] is not None and p["mean"] <= mapper["mean"]]
+    best = min(good, key=lambda point: point["ms"], default=None)
+    if best is None:
+        measured = "no rate is as exact"
+    else:
+        measured = f"{milliseconds(best['ms'])}, {number(best['mean'])} voxels at {best['label']}"
+    goal = f"< {milliseconds(mapper['ms'])}, ≤ {number(mapper['mean'])} voxels (VTK's mapper)"
+    what = "time at equal or smaller depth error"
+    return Verdict(what, measured, goal, best is not None and best["ms"] < mapper["ms"])

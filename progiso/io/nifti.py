@@ -1,0 +1,165 @@
+"""NIfTI (``.nii``, ``.nii.gz``) through VTK, and whatever else nibabel reads."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from vtkmodules.util.numpy_support import get_vtk_to_numpy_typemap, numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonMath import vtkMatrix4x4
+from vtkmodules.vtkIOImage import vtkNIFTIImageReader, vtkNIFTIImageWriter
+
+from .._vtk import dimensions_of, place_as_read, vtk_errors
+from ..geometry import axes_of, image_from_array, set_axes
+from .slab_files import SlabFile, gunzipped, opened_at
+
+
+def read_nifti(path):
+    """Read a NIfTI image with its affine as spacing, origin and direction.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        A ``.nii`` or ``.nii.gz`` file; of a time series the first volume is read.
+
+    Returns
+    -------
+    vtkmodules.vtkCommonDataModel.vtkImageData
+        In the file's world coordinates (right-anterior-superior), by its sform where it has
+        one, else by its qform. A slope and intercept other than 1 and 0 are applied, as float32.
+    """
+    reader = _reader(path)
+    with vtk_errors(f"cannot read '{path}'"):
+        reader.Update()
+    image = reader.GetOutput()
+    _place(image, reader)
+    rescale = _rescaling(reader)
+    if rescale is not None:
+        scalars = image.GetPointData().GetScalars()
+        scaled = numpy_to_vtk(rescale(vtk_to_numpy(scalars)))
+        scaled.SetName(scalars.GetName())
+        image.GetPointData().SetScalars(scaled)
+    return image
+
+
+def nifti_slabs(path):
+    """Open a NIfTI image to be read some slices at a time; errors as in `read_nifti`.
+
+    Returns
+    -------
+    SlabFile or None
+        None when it has a vector's components one after the other, or is compressed and begins
+        with the last slice.
+    """
+    reader = _reader(path)
+    with vtk_errors(f"cannot read '{path}'"):
+        reader.UpdateInformation()
+    with open(path, "rb") as file:
+        packed = file.read(2) == b"\x1f\x8b"
+    from_top = reader.GetQFac() < 0  # VTK puts the slices in the other order
+    if reader.GetNIFTIHeader().GetDim(5) > 1 or (packed and from_top):
+        return None
+
+    def place(image):
+        place_as_read(image, reader)
+        _place(image, reader)
+
+    header = reader.GetHeaderSize()
+    opener = opened_at(path, 0, gunzipped, header) if packed else opened_at(path, header)
+    kind = reader.GetDataScalarType()
+    dtype = np.dtype(get_vtk_to_numpy_typemap()[kind])
+    dtype = dtype.newbyteorder() if reader.GetSwapBytes() else dtype
+    return SlabFile(
+        Path(path),
+        "NIFTI",
+        dimensions_of(reader),
+        dtype,
+        opener,
+        place,
+        reader.GetNumberOfScalarComponents(),
+        kind,
+        _rescaling(reader),
+        from_top,
+    )
+
+
+def _reader(path):
+    reader = vtkNIFTIImageReader()
+    if not reader.CanReadFile(str(path)):
+        raise ValueError(f"'{path}' is not a NIfTI image")
+    reader.SetFileName(str(path))
+    return reader
+
+
+def _place(image, reader):
+    """Set the axes and origin by the affine, which maps VTK's own coordinates, spacing included."""
+    affine = reader.GetSFormMatrix() or reader.GetQFormMatrix()
+    if affine is not None:
+        matrix = np.array([[affine.GetElement(i, j) for j in range(4)] for i in range(4)])
+        origin = matrix[:3, :3] @ np.asarray(image.GetOrigin()) + matrix[:3, 3]
+        set_axes(image, matrix[:3, :3] * np.asarray(image.GetSpacing()), origin)
+
+
+def _rescaling(reader):
+    """How to apply the slope and intercept, or None; a slope of 0 or NaN means none."""
+    slope, intercept = reader.GetRescaleSlope(), reader.GetRescaleIntercept()
+    if not np.isfinite(slope) or slope == 0 or (slope == 1 and intercept == 0):
+        return None
+    return lambda values: (values * slope + intercept).astype(np.float32)
+
+
+def write_nifti(image, path):
+    """Write the active scalars as NIfTI with the image's geometry as its sform.
+
+    Parameters
+    ----------
+    image : vtkmodules.vtkCommonDataModel.vtkImageData
+        Its geometry is stored in single precision, as NIfTI does.
+    path : str or os.PathLike
+        A ``.nii`` or ``.nii.gz`` file.
+    """
+    matrix, extent = np.eye(4), image.GetExtent()
+    axes = axes_of(image)
+    matrix[:3, :3] = axes / np.asarray(image.GetSpacing())
+    matrix[:3, 3] = np.asarray(image.GetOrigin()) + axes @ np.asarray(extent[::2], float)
+    sform = vtkMatrix4x4()
+    sform.DeepCopy(matrix.ravel())
+    plain = type(image)()  # the writer adds the origin to the matrix by itself
+    plain.ShallowCopy(image)
+    plain.SetExtent(0, extent[1] - extent[0], 0, extent[3] - extent[2], 0, extent[5] - extent[4])
+    plain.SetOrigin(0, 0, 0)
+    writer = vtkNIFTIImageWriter()
+    writer.SetInputData(plain)
+    writer.SetSFormMatrix(sform)
+    writer.SetFileName(str(path))
+    with vtk_errors(f"cannot write '{path}'"):
+        writer.Write()
+
+
+def read_nibabel(path):
+    """Read any other image format that nibabel knows (``.mgz``, ``.mnc``, ``.hdr``/``.img`` …).
+
+    Raises
+    ------
+    ImportError
+        When nibabel is not installed.
+    ValueError
+        When nibabel cannot read the file or it is not a volume.
+    """
+    try:
+        import nibabel
+    except ImportError:
+        raise ImportError(f"reading '{path}' needs nibabel: pip install nibabel") from None
+    try:
+        source = nibabel.load(path)
+        values = np.asarray(source.dataobj)
+    except (nibabel.filebasedimages.ImageFileError, nibabel.spatialimages.HeaderDataError) as error:
+        raise ValueError(f"cannot read '{path}': {error}") from None
+    while values.ndim > 3:  # of a series the first volume
+        values = values[..., 0]
+    if values.ndim != 3:
+        raise ValueError(f"'{path}' is not a volume: its shape is {values.shape}")
+    native = np.ascontiguousarray(values.T, values.dtype.newbyteorder("="))
+    image = image_from_array(native, values.shape, "scalars")
+    set_axes(image, source.affine[:3, :3], source.affine[:3, 3])
+    return image

@@ -1,0 +1,1 @@
+"""progiso in pyvista: ``image.progiso`` and ``plotter.progiso``, see `plugin`."""

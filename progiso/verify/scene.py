@@ -1,0 +1,205 @@
+"""Images of a compressed volume, timed, and held against the caster."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from vtkmodules.vtkCommonMath import vtkMatrix4x4
+
+from ..camera import Camera, orbit_camera
+from ..compression import compress, decompress
+from ..geometry import samples_of
+from ..measure import tolerances
+from ..measure.agreement import compare
+from ..measure.isosurface import Isosurface
+from ..measure.view import opposite
+from ..oracle import caster
+from .case import Outcome, worst_of
+from .fields import make_image
+
+#: Seconds that a GPU is kept busy before an image's time counts; it has been busy not long ago.
+_WARM_UP = 0.3
+
+#: From this part of grazing rays on it is told, and how many of all rays have not the caster's own hit.
+_TOLD = 1e-3
+
+#: Bits a sample where a case is not of a rate: what is decoded is the field's to the last places.
+RATE = 32
+
+
+def compressed(values, rate=RATE, **geometry):
+    """A compressed volume of values [z, y, x]; `geometry` as `fields.make_image` has it."""
+    return compress(make_image(values, **geometry), rate)
+
+
+def decoded(image, user=None):
+    """What libzfp decodes of a compressed volume, as the caster takes it."""
+    plain = decompress(image)
+    cells = plain.GetPointData().GetScalars() is None
+    matrix = np.eye(4) if user is None else np.asarray(user, float)
+    return caster.Volume.from_image(samples_of(plain), plain, matrix, 0.5 if cells else 0.0)
+
+
+class Picture(Isosurface):
+    """A compressed volume in a view whose clipping planes may be given.
+
+    Parameters
+    ----------
+    image : vtkmodules.vtkCommonDataModel.vtkImageData
+        A compressed volume.
+    isovalue : float
+    size : tuple of int
+        Width and height in pixels.
+    user : 4x4 array, optional
+        The prop's matrix.
+    clip : tuple of float, optional
+        Distances of the clipping planes; by default they stand around the volume.
+    settings
+        Of `benchmarks.ours.Isosurface`.
+    """
+
+    def __init__(self, image, isovalue, size, user=None, clip=None, **settings):
+        super().__init__(image, isovalue, size, **settings)
+        self._clip = clip
+        if user is not None:
+            matrix = vtkMatrix4x4()
+            matrix.DeepCopy(np.asarray(user, float).ravel())
+            self.prop.SetUserMatrix(matrix)
+
+    def look(self, camera):
+        super().look(camera)
+        if self._clip is not None:
+            self.renderer.GetActiveCamera().SetClippingRange(self._clip)
+
+    def time(self, camera, repeat):
+        """Least milliseconds of an image, another one having been rendered before each.
+
+        With `repeat` 0 those of the first image.
+        """
+        first = self.warm_up(camera, _WARM_UP if repeat > 0 else 0.0)
+        times = [] if repeat > 0 else [first]
+        for _ in range(repeat):
+            self.render_from(opposite(camera))
+            times.append(self.render_from(camera))
+        return min(times)
+
+    def rays(self):
+        """Camera and clipping range as the caster takes them."""
+        camera = self.renderer.GetActiveCamera()
+        return caster.Camera.from_vtk(camera), camera.GetClippingRange()
+
+
+def check_depths(
+    settings,
+    image,
+    isovalue,
+    camera=None,
+    size=None,
+    grazing=tolerances.GRAZING_FRACTION,
+    hits=True,
+    user=None,
+    note="",
+    volume=None,
+    level=None,
+    sample=None,
+    **options,
+):
+    """Render an image, time it, and hold its depths against the caster.
+
+    Parameters
+    ----------
+    settings : case.Settings
+    image : vtkmodules.vtkCommonDataModel.vtkImageData
+        A compressed volume.
+    isovalue : float
+    camera : progiso.Camera, optional
+        By default one of the orbit's.
+    size : tuple of int, optional
+        Of the image, in place of the settings'.
+    grazing : float
+        Part of the rays that may graze; with more there is too little to judge by.
+    hits : bool
+        Whether there have to be any; a case of none has to have none.
+    user : 4x4 array, optional
+        The prop's matrix.
+    note : str
+    volume : progiso.oracle.caster.Volume, optional
+        What the caster casts; by default what libzfp decodes.
+    level : float, optional
+        The isovalue in that volume, where it is in other units.
+    sample : int, optional
+        How many rays of the image are held against the caster's, at random; by default all.
+    options
+        Of `Picture`.
+
+    Returns
+    -------
+    case.Outcome
+    """
+    size = size or settings.size
+    view = Picture(image, isovalue, size, user=user, **options)
+    try:
+        milliseconds = view.time(camera or orbit_camera(view.prop, 1, 4), settings.repeat)
+        depth, (eye, clip) = view.depth(), view.rays()
+        complete, errors = view.converged(), view.mapper.GetNumberOfGLErrors()
+    finally:
+        view.close()
+    volume = volume or decoded(image, user)
+    pixels = None
+    if sample is not None:
+        pixels = np.sort(np.random.default_rng(1).integers(0, depth.size, sample))
+        depth = depth.ravel()[pixels]
+    level = isovalue if level is None else level
+    expected = caster.cast(volume, level, eye, size, tolerances.SLACK, clip, pixels)
+    found = compare(depth, expected)
+    defects = (
+        "" if complete else "the image is not complete",
+        f"{errors} OpenGL errors" if errors else "",
+        f"{found.grazing:.1%} of the rays graze" if found.grazing > grazing else "",
+        _wrong_hits(found),
+        "" if (found.hits > 0) == hits else f"{found.hits} hits",
+    )
+    error, limit = found.worst
+    # beyond what is asked of depths, within what their float32 can tell
+    rounded = bool(error > tolerances.DEPTH_VOXELS)
+    about = f"{found.hits} hits"
+    if rounded:
+        far = np.max(np.where(np.isfinite(depth), depth, 0) * expected.voxels)
+        about += f"; float32 rounds distances of {far:.2g} voxels"
+    if found.grazing >= _TOLD:
+        about += f", {found.grazing:.1%} of the rays graze and {found.differing:.2%} differ"
+    return Outcome(
+        error,
+        limit,
+        milliseconds,
+        note="; ".join(filter(None, (note, about))),
+        documented=rounded,
+        defect="; ".join(filter(None, defects)),
+    )
+
+
+def _wrong_hits(found):
+    count = int(np.isinf(found.error).sum())
+    return f"{count} rays hit where they cannot, or miss what is certain" if count else ""
+
+
+def check_views(settings, image, isovalues, cameras=(None,), **options):
+    """`check_depths` of all isovalues from all cameras: the worst of them."""
+    options.setdefault("volume", decoded(image, options.get("user")))
+    return worst_of(
+        check_depths(settings, image, isovalue, camera, **options)
+        for isovalue in isovalues
+        for camera in cameras
+    )
+
+
+def parallel(camera, scale):
+    """A camera in parallel projection, its image twice `scale` high."""
+    return replace(camera, parallel=True, parallel_scale=float(scale))
+
+
+def looking(position, focal_point, view_up=(0.0, 1.0, 0.0), view_angle=30.0):
+    """A `progiso.Camera` of numbers of any kind."""
+    vectors = (tuple(map(float, v)) for v in (position, focal_point, view_up))
+    return Camera(*vectors, float(view_angle))
