@@ -422,7 +422,6 @@ void vtkProgressiveIsosurfaceMapper::Internals::ReleaseGraphics(vtkWindow* windo
   this->HaveScene = false;
 }
 
-// The stream stays here, in Values, for as long as the pipeline may want to upload it.
 void vtkProgressiveIsosurfaceMapper::Internals::HandOverVolume()
 {
   if (this->HandOverTime < std::max(this->Values.GetTime(), this->Colors.GetTime()))

@@ -11,6 +11,7 @@
 #include "Shaders/BufferTable.h"
 #include "Shaders/SceneBlock.h"
 #include "Shaders/StageTable.h"
+#include "Store/StreamSegments.h"
 
 #include <array>
 #include <cstdint>
@@ -20,17 +21,6 @@
 #include <set>
 #include <string>
 #include <vector>
-
-/// A part of the stream that a buffer of its own holds: whole layers of macrocells, and the layer
-/// of blocks that the last of them reach into.
-struct StreamSegment
-{
-  std::int64_t FirstByte = 0; ///< of the stream, a multiple of 4
-  std::int64_t Bytes = 0;
-  std::uint32_t FirstBlock = 0, Blocks = 0; ///< that are decoded from here
-  std::uint32_t FirstBit = 0;               ///< of the first block, 0 … 31
-  std::uint32_t FirstMacrocell = 0, Macrocells = 0;
-};
 
 /// What the GPU tells the CPU after a pass.
 struct Snapshot

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Pipeline/ProgressivePipeline.h"
 
+#include "Status.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
@@ -195,60 +197,20 @@ void ProgressivePipeline::SetSettings(const PipelineSettings& settings)
   this->Gpu.LimitBuffers(settings.LargestBuffer);
 }
 
-// As few segments as the largest buffer allows, of whole layers of macrocells.
-bool ProgressivePipeline::SplitStream(
-  const CompressedStream& stream, std::vector<StreamSegment>& segments)
+bool ProgressivePipeline::UploadStream(Buffer buffer, const CompressedStream& stream)
 {
-  const std::int64_t largest =
-    std::min(this->Gpu.GetLargestBuffer(), static_cast<std::int64_t>(1) << 33);
-  const std::int64_t layerBlocks =
-    static_cast<std::int64_t>(this->Scene.Blocks[0]) * this->Scene.Blocks[1];
-  const std::int64_t layerCells =
-    static_cast<std::int64_t>(this->Scene.Macrocells[0]) * this->Scene.Macrocells[1];
-  const std::int64_t bits = stream.BlockBits;
-  // one more layer of blocks, which the last macrocells reach into, and a word for the first bits
-  const std::int64_t layers = (8 * (largest - 8) / (layerBlocks * bits) - 1) / 4;
-  if (layers < 1)
-  {
-    return this->Gpu.Fail("five layers of the compressed volume's blocks have " +
-      Bytes(DivideUp(5 * layerBlocks * bits, 8)) + ", more than one GPU buffer can hold (" +
-      Bytes(largest) + "): lower the rate");
-  }
-  for (std::int64_t first = 0; first < this->Scene.Macrocells[2]; first += layers)
-  {
-    const std::int64_t last = std::min<std::int64_t>(first + layers, this->Scene.Macrocells[2]);
-    const std::int64_t begin = 4 * first * layerBlocks;
-    const std::int64_t end = std::min<std::int64_t>(4 * last * layerBlocks, this->Scene.Blocks[3]);
-    const std::int64_t held = std::min<std::int64_t>(end + layerBlocks, this->Scene.Blocks[3]);
-    StreamSegment segment;
-    segment.FirstByte = begin * bits / 32 * 4;
-    segment.Bytes = std::min(DivideUp(held * bits, 32) * 4, stream.Size) - segment.FirstByte;
-    segment.FirstBlock = static_cast<std::uint32_t>(begin);
-    segment.Blocks = static_cast<std::uint32_t>(end - begin);
-    segment.FirstBit = static_cast<std::uint32_t>(begin * bits % 32);
-    segment.FirstMacrocell = static_cast<std::uint32_t>(first * layerCells);
-    segment.Macrocells = static_cast<std::uint32_t>((last - first) * layerCells);
-    segments.push_back(segment);
-  }
-  return true;
+  std::vector<StreamSegment> segments;
+  const Status status =
+    SplitStream(stream, VolumeSize(this->Volume.Samples), this->Gpu.GetLargestBuffer(), segments);
+  return status ? this->Gpu.UploadStream(buffer, stream.Data.get(), segments)
+                : this->Gpu.Fail(status.GetMessage());
 }
 
 bool ProgressivePipeline::UploadStreams()
 {
   this->Gpu.FreeStreams();
-  std::vector<StreamSegment> segments;
-  if (!this->SplitStream(this->Volume.Values, segments) ||
-    !this->Gpu.UploadStream(Buffer::Stream, this->Volume.Values.Data, segments))
-  {
-    return false;
-  }
-  if (!this->Extent.Colored)
-  {
-    return true;
-  }
-  segments.clear();
-  return this->SplitStream(this->Volume.Colors, segments) &&
-    this->Gpu.UploadStream(Buffer::ColorStream, this->Volume.Colors.Data, segments);
+  return this->UploadStream(Buffer::Stream, this->Volume.Values) &&
+    (!this->Extent.Colored || this->UploadStream(Buffer::ColorStream, this->Volume.Colors));
 }
 
 bool ProgressivePipeline::MakeVolumeBuffers()

@@ -8,20 +8,13 @@
 #define ProgressivePipeline_h
 
 #include "GL/Device.h"
+#include "Store/CompressedStream.h"
 
 #include <array>
 #include <chrono>
 #include <functional>
 #include <string>
 #include <vector>
-
-/// A fixed-rate ZFP stream of 4^3 blocks; it stays valid: the pipeline uploads it when it has to.
-struct CompressedStream
-{
-  const unsigned char* Data = nullptr;
-  std::int64_t Size = 0;
-  int BlockBits = 0;
-};
 
 /// Samples on a grid, and optionally others on the same grid that give the colours.
 struct PipelineVolume
@@ -127,7 +120,7 @@ private:
   std::int64_t MinimumSlots() const;
   std::int64_t MaximumSlots() const;
 
-  bool SplitStream(const CompressedStream& stream, std::vector<StreamSegment>& segments);
+  bool UploadStream(Buffer buffer, const CompressedStream& stream);
   bool UploadStreams();
   bool MakeVolumeBuffers();
   bool LoadVolume();

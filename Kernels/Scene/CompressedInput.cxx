@@ -108,8 +108,9 @@ bool CompressedInput::Take(const Choice& choice)
 CompressedStream DescribeStream(vtkCompressedVolume* volume)
 {
   CompressedStream stream;
-  stream.Data = volume->GetStream()->GetPointer(0);
-  stream.Size = volume->GetStream()->GetNumberOfValues() / 8 * 8;
+  const auto array = std::make_shared<vtkSmartPointer<vtkUnsignedCharArray>>(volume->GetStream());
+  stream.Data = std::shared_ptr<const unsigned char>(array, (*array)->GetPointer(0));
+  stream.Size = (*array)->GetNumberOfValues() / 8 * 8;
   stream.BlockBits = volume->GetBlockBits();
   return stream;
 }

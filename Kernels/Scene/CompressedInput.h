@@ -62,7 +62,7 @@ private:
   std::string Error;
 };
 
-///@{ What the pipeline uploads of a compressed volume, which has to stay where it is.
+///@{ What the pipeline uploads of a compressed volume; it shares the ownership of the stream.
 CompressedStream DescribeStream(vtkCompressedVolume* volume);
 PipelineVolume DescribeVolume(vtkCompressedVolume* volume);
 ///@}
