@@ -187,7 +187,7 @@ public:
   vtkTimeStamp HandOverTime; // of both, to the pipeline
   std::vector<float> Palette;
 
-  SceneBlock Scene;
+  PipelineScene Scene;
   bool HaveScene = false;
   vtkNew<vtkMatrix4x4> EyeToWorld;        // of Scene
   std::pair<int, vtkMTimeType> Obstacles; // of Scene: how many props, and when they last changed
@@ -254,9 +254,9 @@ bool vtkProgressiveIsosurfaceMapper::Internals::CheckLimits(
       this->Report("takes at most " + std::to_string(most) + " " + what + ", but there are " +
         std::to_string(count) + ": take some away, or share them among several mappers");
   };
-  return check(shown, SceneBlock::MaximumIsovalues, "isovalues that show") &&
-    check(planes, SceneBlock::MaximumClippingPlanes, "clipping planes") &&
-    check(lit, SceneBlock::MaximumLights, "lights that are switched on");
+  return check(shown, glsl::MAX_ISOVALUES, "isovalues that show") &&
+    check(planes, glsl::MAX_CLIPPING_PLANES, "clipping planes") &&
+    check(lit, glsl::MAX_LIGHTS, "lights that are switched on");
 }
 
 bool vtkProgressiveIsosurfaceMapper::Internals::Report(const std::string& problem)
@@ -486,32 +486,35 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(
   int origin[2];
   renderer->GetTiledSizeAndOrigin(&this->ViewSize[0], &this->ViewSize[1], &origin[0], &origin[1]);
   const int viewport[4] = { place[2], place[3], place[0], place[1] };
-  SceneBlock scene = TranslateScene(
+  PipelineScene scene = TranslateScene(
     renderer, volume, this->Owner, this->Values.GetImage(), this->Values.GetVolume(), viewport);
-  if (!HasRays(scene))
+  if (!HasRays(scene.View))
   {
     return this->Report("cannot show its input: the image's spacing, origin and directions, the "
                         "volume's matrix and the camera must be finite, and none of them flat");
   }
-  const bool likeMeshes = this->Owner->LitLikeMeshes && scene.Lighting[3] != 0;
-  scene.Lighting[3] = likeMeshes ? SceneBlock::LitLikeMeshes : scene.Lighting[3];
+  if (this->Owner->LitLikeMeshes && scene.Look.LitSides == glsl::TWO_SIDED)
+  {
+    scene.Look.LitSides = glsl::LIT_LIKE_MESHES;
+  }
   vtkCamera* camera = renderer->GetActiveCamera();
   vtkMatrix4x4::Invert(camera->GetModelViewTransformMatrix(), this->EyeToWorld);
-  const bool translucent = scene.Lighting[1] != 0;
   const auto obstacles =
-    translucent ? this->FindObstacles(renderer, volume) : std::pair<int, vtkMTimeType>();
-  scene.Lighting[2] = obstacles.first > 0 ? 1 : 0;
+    scene.Translucent ? this->FindObstacles(renderer, volume) : std::pair<int, vtkMTimeType>();
+  scene.Obstructed = obstacles.first > 0;
   const bool samePalette = this->UpdatePalette(volume->GetProperty());
   const std::pair<vtkRenderer*, int> view = { renderer, camera->GetLeftEye() };
   const bool otherView = this->View.first && view != this->View;
   this->RendersOfView = otherView ? 0 : this->RendersOfView + 1;
-  const bool sameHits = this->HaveScene && view == this->View && SameHits(this->Scene, scene) &&
-    (!translucent || (SameLook(this->Scene, scene) && samePalette && obstacles == this->Obstacles));
+  const bool sameHits = this->HaveScene && view == this->View &&
+    SameHits(this->Scene.View, scene.View) &&
+    (!scene.Translucent ||
+      (SameLook(this->Scene.Look, scene.Look) && samePalette && obstacles == this->Obstacles));
   this->View = view;
   this->Obstacles = obstacles;
   if (sameHits)
   {
-    KeepHits(this->Scene, scene);
+    scene.View = this->Scene.View;
   }
   this->Scene = scene;
   this->HaveScene = true;
@@ -592,7 +595,7 @@ bool vtkProgressiveIsosurfaceMapper::Internals::Refine(vtkOpenGLRenderWindow* wi
 
 void vtkProgressiveIsosurfaceMapper::Internals::Composite(vtkOpenGLRenderWindow* window)
 {
-  const DrawingState drawing(window->GetState(), this->Scene.Lighting[1] != 0);
+  const DrawingState drawing(window->GetState(), this->Scene.Translucent);
   this->Pipeline.Composite();
 }
 
@@ -678,7 +681,8 @@ void vtkProgressiveIsosurfaceMapper::Internals::FillStatistics()
   vtkProgressiveIsosurfaceStatistics* statistics = this->Owner->Statistics;
   vtkTable* table = statistics->Passes;
   const std::vector<TimedPass>& passes = this->Pipeline.GetPasses();
-  const double pixels = static_cast<double>(this->Scene.Image[0]) * this->Scene.Image[1];
+  const double pixels =
+    static_cast<double>(this->Scene.View.ImageSize[0]) * this->Scene.View.ImageSize[1];
   const double uncounted = this->Owner->DetailedStatistics ? 0.0 : vtkMath::Nan();
   table->SetNumberOfRows(static_cast<vtkIdType>(passes.size()));
   for (std::size_t i = 0; i < passes.size(); ++i)
@@ -703,7 +707,7 @@ void vtkProgressiveIsosurfaceMapper::Internals::FillStatistics()
       statistics->Buffers.emplace_back(info.Name, resources.GetBytes(info.Id));
     }
   }
-  statistics->Buffers.emplace_back("scene", sizeof(SceneBlock));
+  statistics->Buffers.emplace_back("scene", Device::GetUniformBytes());
   if (resources.GetPaletteBytes() > 0)
   {
     statistics->Buffers.emplace_back("palette", resources.GetPaletteBytes());
@@ -943,29 +947,28 @@ bool vtkProgressiveIsosurfaceMapper::WasRenderedIn(vtkRenderer* renderer)
 bool vtkProgressiveIsosurfaceMapper::GetHit(int x, int y, double position[3], double& isovalue)
 {
   Internals* impl = this->Impl.get();
-  const SceneBlock& scene = impl->Pipeline.GetScene();
+  const glsl::View& view = impl->Scene.View;
   const int* size = impl->ViewSize;
   if (!impl->HaveScene || !impl->Window || x < 0 || y < 0 || x >= size[0] || y >= size[1])
   {
     return false;
   }
   // a pass may have drawn a larger image than the viewport
-  x = static_cast<int>((x + 0.5) * scene.Image[0] / size[0]);
-  y = static_cast<int>((y + 0.5) * scene.Image[1] / size[1]);
+  x = static_cast<int>((x + 0.5) * view.ImageSize[0] / size[0]);
+  y = static_cast<int>((y + 0.5) * view.ImageSize[1] / size[1]);
   impl->Window->MakeCurrent();
-  const PixelHit hit = impl->Pipeline.ReadHit(static_cast<std::int64_t>(y) * scene.Image[0] + x);
+  const PixelHit hit = impl->Pipeline.ReadHit(static_cast<std::int64_t>(y) * view.ImageSize[0] + x);
   if (hit.Key == PixelHit().Key)
   {
     return false;
   }
-  const bool translucent = scene.Lighting[1] != 0;
-  const double t = translucent ? hit.Depth : HitParameter(scene, x, y, hit.Key);
+  const double t = impl->Scene.Translucent ? hit.Depth : HitParameter(view, x, y, hit.Key);
   double point[4] = { 0.0, 0.0, 0.0, 1.0 };
-  EyePosition(scene, x, y, t, point);
+  EyePosition(view, x, y, t, point);
   impl->EyeToWorld->MultiplyPoint(point, point);
   std::copy(point, point + 3, position);
   isovalue = impl->Values.GetVolume()->ToSample(
-    double(scene.Isovalues[hit.Surface][0]) + scene.Isovalues[hit.Surface][1]);
+    double(view.Isovalues[hit.Surface].High) + view.Isovalues[hit.Surface].Low);
   return true;
 }
 
@@ -977,25 +980,25 @@ bool vtkProgressiveIsosurfaceMapper::GetDepthImage(vtkImageData* image)
     return false;
   }
   this->Impl->Window->MakeCurrent();
-  const SceneBlock& scene = this->Impl->Pipeline.GetScene();
+  const glsl::View& view = this->Impl->Scene.View;
   const std::vector<std::uint32_t> keys = this->Impl->Pipeline.ReadHitKeys();
-  const bool translucent = scene.Lighting[1] != 0; // the keys are those of the last hits
+  const bool translucent = this->Impl->Scene.Translucent; // the keys are those of the last hits
   const std::vector<float> first =
     translucent ? this->Impl->Pipeline.ReadHitDepths() : std::vector<float>();
   vtkNew<vtkFloatArray> depths;
   depths->SetName("Depth");
   depths->SetNumberOfValues(static_cast<vtkIdType>(keys.size()));
-  for (int y = 0; y < scene.Image[1]; ++y)
+  for (int y = 0; y < view.ImageSize[1]; ++y)
   {
-    for (int x = 0; x < scene.Image[0]; ++x)
+    for (int x = 0; x < view.ImageSize[0]; ++x)
     {
-      const vtkIdType pixel = static_cast<vtkIdType>(y) * scene.Image[0] + x;
-      const double last = HitParameter(scene, x, y, keys[pixel]);
+      const vtkIdType pixel = static_cast<vtkIdType>(y) * view.ImageSize[0] + x;
+      const double last = HitParameter(view, x, y, keys[pixel]);
       const double t = translucent && std::isfinite(last) ? first[pixel] : last;
-      depths->SetValue(pixel, static_cast<float>(RayLength(scene, x, y, t)));
+      depths->SetValue(pixel, static_cast<float>(RayLength(view, x, y, t)));
     }
   }
-  image->SetDimensions(scene.Image[0], scene.Image[1], 1);
+  image->SetDimensions(view.ImageSize[0], view.ImageSize[1], 1);
   image->GetPointData()->SetScalars(depths);
   return true;
 }

@@ -4,7 +4,7 @@
 # @shader_includes@ and @shader_entries@ replaced: it lists the texts by their paths in FOLDER.
 function (progiso_embed_shaders folder template sources_name headers_name)
   file(GLOB_RECURSE shaders CONFIGURE_DEPENDS RELATIVE "${folder}"
-    "${folder}/*.glsl" "${folder}/*.comp" "${folder}/*.vert" "${folder}/*.frag")
+    "${folder}/*.glsl" "${folder}/*.glsl.h" "${folder}/*.comp" "${folder}/*.vert" "${folder}/*.frag")
   set(generated_sources)
   set(generated_headers)
   set(shader_includes)

@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "GL/Device.h"
 
+#include "Shaders/Shared/SceneBlocks.glsl.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <iterator>
+#include <numeric>
 #include <sstream>
 #include <utility>
 
@@ -19,6 +22,10 @@ constexpr std::int64_t LargestStaging = 1 << 12;   // bytes that stay allocated 
 constexpr std::int64_t MostSnapshots = 8;          // under way at once, with room to spare
 constexpr int MostErrors = 16;                     // of others; a lost context never has none
 constexpr std::int64_t SoftwareBuffer = 1LL << 30; // llvmpipe has no limit, whatever it reports
+
+// Bytes of the uniform blocks, by their bindings.
+constexpr std::int64_t UniformBytes[] = { sizeof(glsl::View), sizeof(glsl::Look),
+  sizeof(glsl::Volume), sizeof(glsl::Cache) };
 
 // Bytes beyond which a buffer is made sparse: NVIDIA then backs it with large pages. Random reads
 // of a plain buffer are as fast up to 128 MiB and then 10 to 400 times slower, but it is made 10
@@ -140,9 +147,12 @@ bool Device::Initialize(std::uint64_t context)
   this->AskLimits();
   glGenVertexArrays(1, &this->VertexArray);
   glGenBuffers(1, &this->Staging);
-  glGenBuffers(1, &this->SceneBuffer);
-  glBindBuffer(GL_UNIFORM_BUFFER, this->SceneBuffer);
-  glBufferData(GL_UNIFORM_BUFFER, sizeof(SceneBlock), nullptr, GL_DYNAMIC_DRAW);
+  glGenBuffers(static_cast<GLsizei>(this->UniformBuffers.size()), this->UniformBuffers.data());
+  for (std::size_t binding = 0; binding < this->UniformBuffers.size(); ++binding)
+  {
+    glBindBuffer(GL_UNIFORM_BUFFER, this->UniformBuffers[binding]);
+    glBufferData(GL_UNIFORM_BUFFER, UniformBytes[binding], nullptr, GL_DYNAMIC_DRAW);
+  }
   glBindBuffer(GL_UNIFORM_BUFFER, 0);
   return true;
 }
@@ -170,10 +180,10 @@ void Device::Release()
     this->Programs->Release();
   }
   this->Programs = nullptr;
-  glDeleteBuffers(1, &this->SceneBuffer);
+  glDeleteBuffers(static_cast<GLsizei>(this->UniformBuffers.size()), this->UniformBuffers.data());
   glDeleteBuffers(1, &this->Staging);
   glDeleteVertexArrays(1, &this->VertexArray);
-  this->SceneBuffer = 0;
+  this->UniformBuffers.fill(0);
   this->Staging = 0;
   this->StagingBytes = 0;
   this->VertexArray = 0;
@@ -230,8 +240,11 @@ bool Device::Bind(Stage stage, GLuint stream, const StreamSegment* segment)
     return false;
   }
   glUseProgram(program);
-  glBindBufferBase(GL_UNIFORM_BUFFER, 0, this->SceneBuffer);
-  glBindBufferBase(GL_UNIFORM_BUFFER, 1, this->PaletteBuffer);
+  for (std::size_t i = 0; i < this->UniformBuffers.size(); ++i)
+  {
+    glBindBufferBase(GL_UNIFORM_BUFFER, static_cast<GLuint>(i), this->UniformBuffers[i]);
+  }
+  glBindBufferBase(GL_UNIFORM_BUFFER, PALETTE_BINDING, this->PaletteBuffer);
   for (std::size_t i = 0; i < names.size(); ++i)
   {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(i), names[i]);
@@ -299,8 +312,10 @@ void Device::Draw(Stage stage, const std::array<float, 4>* selected)
   {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, 0);
   }
-  glBindBufferBase(GL_UNIFORM_BUFFER, 0, 0);
-  glBindBufferBase(GL_UNIFORM_BUFFER, 1, 0);
+  for (GLuint binding = 0; binding <= PALETTE_BINDING; ++binding)
+  {
+    glBindBufferBase(GL_UNIFORM_BUFFER, binding, 0);
+  }
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, 0);
   glUseProgram(0);
 }
@@ -606,11 +621,16 @@ void Device::Write(Buffer buffer, std::size_t offset, const void* data, std::siz
   glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
 }
 
-void Device::UploadScene(const SceneBlock& scene)
+void Device::UploadUniforms(int binding, const void* block, std::size_t bytes)
 {
-  glBindBuffer(GL_UNIFORM_BUFFER, this->SceneBuffer);
-  glBufferSubData(GL_UNIFORM_BUFFER, 0, sizeof(SceneBlock), &scene);
+  glBindBuffer(GL_UNIFORM_BUFFER, this->UniformBuffers[binding]);
+  glBufferSubData(GL_UNIFORM_BUFFER, 0, static_cast<GLsizeiptr>(bytes), block);
   glBindBuffer(GL_UNIFORM_BUFFER, 0);
+}
+
+std::int64_t Device::GetUniformBytes()
+{
+  return std::accumulate(std::begin(UniformBytes), std::end(UniformBytes), std::int64_t(0));
 }
 
 void Device::UploadPalette(const std::vector<float>& palette)

@@ -9,7 +9,6 @@
 #include "GL/ProgIsoGL.h"
 #include "GL/ProgramCache.h"
 #include "Shaders/BufferTable.h"
-#include "Shaders/SceneBlock.h"
 #include "Shaders/StageTable.h"
 #include "Store/StreamSegments.h"
 
@@ -40,7 +39,7 @@ public:
   /// Check the context, told by a number of its own, and make what is always there; false where it
   /// cannot run the stages.
   bool Initialize(std::uint64_t context);
-  bool IsInitialized() const { return this->SceneBuffer != 0; }
+  bool IsInitialized() const { return this->UniformBuffers[0] != 0; }
   void Release();
 
   ///@{ The first thing that went wrong since Release().
@@ -75,7 +74,9 @@ public:
   ///@{ Traffic with the CPU. It waits for the GPU only where it reads.
   void Read(Buffer buffer, std::int64_t offset, void* data, std::int64_t bytes);
   void Write(Buffer buffer, std::size_t offset, const void* data, std::size_t bytes);
-  void UploadScene(const SceneBlock& scene);
+  /// A uniform block of SceneBlocks.glsl.h.
+  void UploadUniforms(int binding, const void* block, std::size_t bytes);
+  static std::int64_t GetUniformBytes();
   /// Colours over a range, see Shading.glsl; none: nothing is left of it.
   void UploadPalette(const std::vector<float>& palette);
   std::int64_t GetPaletteBytes() const { return this->PaletteBytes; }
@@ -162,7 +163,7 @@ private:
   std::shared_ptr<ProgramCache> Programs;
   PipelineExtent Extent;
 
-  GLuint SceneBuffer = 0;
+  std::array<GLuint, 4> UniformBuffers = {}; ///< by their bindings, without the palette
   GLuint PaletteBuffer = 0;
   std::int64_t PaletteBytes = 0;
   GLuint Staging = 0; ///< what the CPU reads and writes passes through it

@@ -24,7 +24,6 @@ constexpr int PassesAhead = 3;       // submitted before the CPU knows whether t
 constexpr int PatienceWithNone = 64; // passes that get nowhere before we give up
 constexpr std::size_t RecentImages = 8;
 constexpr std::uint32_t FewRays = 32; // as many pixels a ray, or more: each gets a work group
-constexpr std::uint32_t PixelsPerBlockAhead = 4;
 
 std::int64_t DivideUp(std::int64_t a, std::int64_t b)
 {
@@ -73,8 +72,8 @@ void ProgressivePipeline::Release()
 // All GPU memory beside the compressed stream.
 std::int64_t ProgressivePipeline::BytesWith(const PipelineExtent& extent) const
 {
-  std::int64_t bytes = static_cast<std::int64_t>(sizeof(SceneBlock)) + Device::GetStagingLimit() +
-    (extent.Colored ? PaletteBytes : 0);
+  std::int64_t bytes =
+    Device::GetUniformBytes() + Device::GetStagingLimit() + (extent.Colored ? PaletteBytes : 0);
   for (Lifetime lifetime :
     { Lifetime::Pipeline, Lifetime::Volume, Lifetime::Image, Lifetime::Cache })
   {
@@ -96,7 +95,7 @@ PipelineExtent ProgressivePipeline::WholeVolume() const
 {
   PipelineExtent extent = this->Extent;
   extent.Cached = false;
-  extent.Slots = this->Scene.Blocks[3];
+  extent.Slots = this->Grid.NumberOfBlocks;
   extent.Pages = 0;
   return extent;
 }
@@ -116,7 +115,7 @@ std::int64_t ProgressivePipeline::ChooseBudget() const
 
 std::int64_t ProgressivePipeline::MinimumSlots() const
 {
-  return std::min<std::int64_t>(LeastSlots, this->Scene.Blocks[3]);
+  return std::min<std::int64_t>(LeastSlots, this->Grid.NumberOfBlocks);
 }
 
 // As many as the budget has room for, one buffer can hold and the volume has blocks; 0 where the
@@ -125,7 +124,7 @@ std::int64_t ProgressivePipeline::MaximumSlots() const
 {
   std::int64_t least = 0;
   std::int64_t most = std::min<std::int64_t>(
-    this->Scene.Blocks[3], this->Gpu.GetLargestBuffer() / BytesPerSlot(this->Extent));
+    this->Grid.NumberOfBlocks, this->Gpu.GetLargestBuffer() / BytesPerSlot(this->Extent));
   while (least < most)
   {
     const std::int64_t middle = DivideUp(least + most, 2);
@@ -159,15 +158,16 @@ void ProgressivePipeline::SetVolume(const PipelineVolume& volume)
   std::int64_t blocks = 1, macrocells = 1;
   for (int axis = 0; axis < 3; ++axis)
   {
-    this->Scene.Samples[axis] = volume.Samples[axis];
-    this->Scene.Blocks[axis] = static_cast<std::int32_t>(DivideUp(volume.Samples[axis], 4));
-    this->Scene.Macrocells[axis] = static_cast<std::int32_t>(DivideUp(volume.Samples[axis], 16));
-    blocks *= this->Scene.Blocks[axis];
-    macrocells *= this->Scene.Macrocells[axis];
+    this->Grid.Samples[axis] = volume.Samples[axis];
+    this->Grid.Blocks[axis] = static_cast<std::int32_t>(DivideUp(volume.Samples[axis], 4));
+    this->Grid.Macrocells[axis] = static_cast<std::int32_t>(DivideUp(volume.Samples[axis], 16));
+    blocks *= this->Grid.Blocks[axis];
+    macrocells *= this->Grid.Macrocells[axis];
   }
-  this->Scene.Samples[3] = volume.Values.BlockBits;
-  this->Scene.Blocks[3] = static_cast<std::int32_t>(blocks);
-  this->Scene.Macrocells[3] = static_cast<std::int32_t>(macrocells);
+  this->Grid.BlockBits = volume.Values.BlockBits;
+  this->Grid.ColorBlockBits = volume.Colors.BlockBits;
+  this->Grid.NumberOfBlocks = static_cast<std::uint32_t>(blocks);
+  this->Grid.NumberOfMacrocells = static_cast<std::uint32_t>(macrocells);
   this->Extent.Macrocells = macrocells;
   this->Extent.Colored = volume.Colors.Data != nullptr;
   this->Extent.HiddenWords = static_cast<std::int64_t>(volume.Hidden.size());
@@ -219,6 +219,7 @@ bool ProgressivePipeline::MakeVolumeBuffers()
   {
     return false;
   }
+  this->Gpu.UploadUniforms(VOLUME_BINDING, &this->Grid, sizeof(this->Grid));
   this->Gpu.Upload(Buffer::HiddenCells, this->Volume.Hidden);
   return true;
 }
@@ -266,10 +267,10 @@ bool ProgressivePipeline::ResizeCache(std::int64_t slots)
     this->Extent.Slots = 0;
     return false;
   }
-  this->Scene.Cache[0] = static_cast<std::uint32_t>(slots);
-  this->Scene.Cache[1] = static_cast<std::uint32_t>(this->Extent.Pages);
-  this->Scene.Cache[3] = slots == this->MaximumSlots() ? 1 : 0;
-  this->Gpu.UploadScene(this->Scene);
+  this->Cache.Slots = static_cast<std::uint32_t>(slots);
+  this->Cache.MapPages = static_cast<std::uint32_t>(this->Extent.Pages);
+  this->Cache.CannotGrow = slots == this->MaximumSlots() ? 1 : 0;
+  this->UploadCache();
   this->Gpu.Dispatch(Stage::CacheReset,
     std::min<std::int64_t>(4096, DivideUp(std::max(slots, this->Extent.Macrocells), 256)));
   this->CacheAge = this->PassesSubmitted;
@@ -312,33 +313,30 @@ std::int64_t ProgressivePipeline::SlotsForRecentImages() const
 //------------------------------------------------------------------------------
 // The scene
 //------------------------------------------------------------------------------
-void ProgressivePipeline::FillInScene(const SceneBlock& scene)
+void ProgressivePipeline::UploadCache()
 {
-  const SceneBlock own = this->Scene;
-  this->Scene = scene;
-  std::copy(own.Samples, own.Samples + 4, this->Scene.Samples);
-  std::copy(own.Blocks, own.Blocks + 4, this->Scene.Blocks);
-  std::copy(own.Macrocells, own.Macrocells + 4, this->Scene.Macrocells);
-  std::copy(own.Cache, own.Cache + 4, this->Scene.Cache);
-  this->Scene.Surface[3] = this->Volume.Colors.BlockBits;
-  this->Scene.Cache[2] = static_cast<std::uint32_t>(this->Settings.SpeculationLimit);
+  this->Cache.SpeculationLimit = static_cast<std::uint32_t>(this->Settings.SpeculationLimit);
   // a software renderer has no lanes to keep busy, and its work groups cost much
-  this->Scene.Policy[0] = this->Gpu.IsSoftware() ? 0 : FewRays;
-  this->Scene.Policy[1] = PixelsPerBlockAhead;
+  this->Cache.PixelsPerStraggler = this->Gpu.IsSoftware() ? 0 : FewRays;
+  this->Gpu.UploadUniforms(CACHE_BINDING, &this->Cache, sizeof(this->Cache));
 }
 
-bool ProgressivePipeline::SetScene(const SceneBlock& scene, bool newImage)
+bool ProgressivePipeline::SetScene(const PipelineScene& scene, bool newImage)
 {
-  this->FillInScene(scene);
+  const glsl::View& view = scene.View;
+  this->Gpu.UploadUniforms(VIEW_BINDING, &scene.View, sizeof(scene.View));
+  this->Gpu.UploadUniforms(LOOK_BINDING, &scene.Look, sizeof(scene.Look));
+  std::copy(view.ImageSize, view.ImageSize + 2, this->Viewport);
+  std::copy(view.ImageOrigin, view.ImageOrigin + 2, this->Viewport + 2);
   const PipelineExtent before = this->Extent;
-  this->Extent.Pixels = static_cast<std::int64_t>(scene.Image[0]) * scene.Image[1];
+  this->Extent.Pixels = static_cast<std::int64_t>(view.ImageSize[0]) * view.ImageSize[1];
   this->Extent.Detailed = this->Settings.Detailed;
-  this->Extent.Lit = scene.Lighting[0] > 0;
-  this->Extent.Translucent = scene.Lighting[1] > 0;
-  this->Extent.Obstructed = scene.Lighting[2] > 0;
-  this->Extent.SeveralIsovalues = scene.Surface[0] > 1;
-  this->Extent.Clipped = scene.Surface[1] > 0;
-  this->Extent.Cropped = scene.Surface[2] != SceneBlock::AllRegions;
+  this->Extent.Lit = scene.Look.NumberOfLights > 0;
+  this->Extent.Translucent = scene.Translucent;
+  this->Extent.Obstructed = scene.Obstructed;
+  this->Extent.SeveralIsovalues = view.NumberOfIsovalues > 1;
+  this->Extent.Clipped = view.NumberOfClippingPlanes > 0;
+  this->Extent.Cropped = view.DrawnRegions != glsl::ALL_REGIONS;
   const bool sameImage =
     before.Pixels == this->Extent.Pixels && before.GetFeatures() == this->Extent.GetFeatures();
   this->Started = this->Started && sameImage;
@@ -372,7 +370,7 @@ bool ProgressivePipeline::MakeRoom(bool newImage)
   this->Extent = cached ? this->WithSlots(slots) : whole;
   this->Gpu.Trim(this->Extent);
   this->Gpu.SetExtent(this->Extent);
-  this->Gpu.UploadScene(this->Scene);
+  this->UploadCache();
   if (reload)
   {
     this->Gpu.ForgetStages();
@@ -395,7 +393,7 @@ bool ProgressivePipeline::MakeCache(std::int64_t most, bool newImage)
     slots = this->SlotsForRecentImages();
   }
   const bool same = this->Gpu.Has(Lifetime::Cache, this->WithSlots(slots)) &&
-    this->Scene.Cache[3] == (slots == most ? 1u : 0u);
+    this->Cache.CannotGrow == (slots == most ? 1u : 0u);
   return same || this->ResizeCache(slots);
 }
 
@@ -430,7 +428,7 @@ void ProgressivePipeline::Start()
   if (this->Extent.Obstructed)
   {
     const std::int64_t section = 2 + this->Extent.SeveralIsovalues + this->Extent.Colored;
-    this->Gpu.CaptureDepths(this->Scene.Image, Buffer::Hits, 4 * section * this->Extent.Pixels);
+    this->Gpu.CaptureDepths(this->Viewport, Buffer::Hits, 4 * section * this->Extent.Pixels);
   }
   const std::uint32_t yes = 1;
   this->Gpu.Write(Buffer::Control, offsetof(ControlBlock, NewImage), &yes, sizeof(yes));
@@ -444,7 +442,7 @@ void ProgressivePipeline::Start()
 // between the stages. Where the whole volume is decoded one pass casts all rays to their ends.
 void ProgressivePipeline::RunPass()
 {
-  if (this->Extent.Cached && this->Extent.Slots < this->Scene.Blocks[3])
+  if (this->Extent.Cached && this->Extent.Slots < this->Grid.NumberOfBlocks)
   {
     this->Gpu.DispatchIndirect(Stage::CacheAges, offsetof(ControlBlock, EvictGroups));
     this->Gpu.DispatchIndirect(Stage::CacheEvict, offsetof(ControlBlock, EvictGroups));
@@ -650,7 +648,6 @@ bool ProgressivePipeline::DecodeVolume(std::vector<float>& values)
 {
   this->Extent = this->WholeVolume();
   this->Gpu.SetExtent(this->Extent);
-  this->Gpu.UploadScene(this->Scene);
   if (!this->LoadWholeVolume())
   {
     return false;

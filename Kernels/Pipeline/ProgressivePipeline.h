@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Drives the stages of progressive speculative iso-raycasting (Usher, Dyken and Kumar, LDAV 2023)
 // on the current OpenGL context. It owns the GPU's objects and knows nothing of VTK's scene: the
-// mapper (vtkProgressiveIsosurfaceMapper) translates that into a SceneBlock and calls, in this
+// mapper (vtkProgressiveIsosurfaceMapper) translates that into a PipelineScene and calls, in this
 // order, SetVolume, SetSettings, SetScene, Start, RunPasses, Composite.
 #ifndef ProgressivePipeline_h
 #define ProgressivePipeline_h
 
 #include "GL/Device.h"
+#include "Pipeline/PipelineScene.h"
 #include "Store/CompressedStream.h"
 
 #include <array>
@@ -69,10 +70,10 @@ public:
   void SetPalette(const std::vector<float>& palette) { this->Gpu.UploadPalette(palette); }
   /// Forget all decoded blocks.
   void EmptyCache();
-  /// The image's size, camera, isovalue and look; the pipeline fills in what it knows itself, and
-  /// makes ready what the scene needs: the volume's macrocells, the cache, the image's buffers.
-  /// False and GetError() where the budget or the GPU has no room. `newImage`: Start() follows.
-  bool SetScene(const SceneBlock& scene, bool newImage);
+  /// The image's size, camera, isovalues and look. Makes ready what the scene needs: the volume's
+  /// macrocells, the cache, the image's buffers. False and GetError() where the budget or the GPU
+  /// has no room. `newImage`: Start() follows.
+  bool SetScene(const PipelineScene& scene, bool newImage);
 
   /// Begin a new image: no ray has begun. Needed first, and where IsStarted() tells so.
   void Start();
@@ -95,7 +96,6 @@ public:
   ///@}
   const std::vector<TimedPass>& GetPasses() const { return this->Passes; }
   Device& GetResources() { return this->Gpu; }
-  const SceneBlock& GetScene() const { return this->Scene; }
   const std::string& GetError() const { return this->Gpu.GetError(); }
   bool CheckMemory() { return this->Gpu.CheckMemory(); }
 
@@ -110,7 +110,7 @@ public:
 private:
   using Clock = std::chrono::steady_clock;
 
-  void FillInScene(const SceneBlock& scene);
+  void UploadCache();
   bool MakeRoom(bool newImage);
   bool MakeCache(std::int64_t most, bool newImage);
   std::int64_t BytesWith(const PipelineExtent& extent) const;
@@ -140,7 +140,9 @@ private:
   PipelineVolume Volume;
   PipelineSettings Settings;
   PipelineExtent Extent; ///< what the GPU's buffers are made for
-  SceneBlock Scene;
+  glsl::Volume Grid = {};
+  glsl::Cache Cache = {};
+  std::int32_t Viewport[4] = { 0, 0, 0, 0 }; ///< width, height and origin in the window
   std::int64_t Budget = 0;
   bool VolumeLoaded = false;
 

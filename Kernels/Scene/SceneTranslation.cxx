@@ -92,42 +92,49 @@ void SamplesToWorld(
 }
 
 // The image's part of the samples; a piece with cell data reaches to the next one's first samples.
-void TranslatePart(vtkImageData* image, vtkCompressedVolume* compressed, SceneBlock& scene)
+void TranslatePart(vtkImageData* image, vtkCompressedVolume* compressed, glsl::View& view)
 {
   const int* drawn = image->GetExtent();
   const int* samples = compressed->GetExtent();
   for (int axis = 0; axis < 3; ++axis)
   {
-    scene.FirstDrawn[axis] = drawn[2 * axis] - samples[2 * axis];
-    scene.LastDrawn[axis] =
+    view.FirstDrawn[axis] = drawn[2 * axis] - samples[2 * axis];
+    view.LastDrawn[axis] =
       std::min(drawn[2 * axis + 1] - samples[2 * axis], compressed->GetDimensions()[axis] - 1);
   }
 }
 
-void TranslateRays(const EyeRays& rays, vtkMatrix4x4* eyeToIndex, SceneBlock& scene)
+// Only the base of origins is a point, all else are vectors.
+void TranslateToIndex(
+  const double eye[3][3], bool isOrigin, vtkMatrix4x4* eyeToIndex, glsl::PixelVector& index)
 {
+  double* const terms[] = { index.Base, index.PerX, index.PerY };
   for (int i = 0; i < 3; ++i)
   {
-    const double point = i == 0 ? 1.0 : 0.0; // only the base is a point, the rest are vectors
-    const double origin[4] = { rays.Origin[i][0], rays.Origin[i][1], rays.Origin[i][2], point };
-    const double direction[4] = { rays.Direction[i][0], rays.Direction[i][1], rays.Direction[i][2],
-      0.0 };
-    double result[4];
-    eyeToIndex->MultiplyPoint(origin, result);
-    std::copy(result, result + 3, scene.RayOrigin[i]);
-    eyeToIndex->MultiplyPoint(direction, result);
-    std::copy(result, result + 3, scene.RayDirection[i]);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      scene.EyeOrigin[i][axis] = rays.Origin[i][axis];
-      scene.EyeDirection[i][axis] = rays.Direction[i][axis];
-    }
+    double vector[4] = { eye[i][0], eye[i][1], eye[i][2], isOrigin && i == 0 ? 1.0 : 0.0 };
+    eyeToIndex->MultiplyPoint(vector, vector);
+    std::copy(vector, vector + 3, terms[i]);
   }
+}
+
+void CopyTerms(const double terms[3][3], glsl::PixelVector& vector)
+{
+  std::copy(terms[0], terms[0] + 3, vector.Base);
+  std::copy(terms[1], terms[1] + 3, vector.PerX);
+  std::copy(terms[2], terms[2] + 3, vector.PerY);
+}
+
+void TranslateRays(const EyeRays& rays, vtkMatrix4x4* eyeToIndex, glsl::View& view)
+{
+  TranslateToIndex(rays.Origin, true, eyeToIndex, view.RayOrigin);
+  TranslateToIndex(rays.Direction, false, eyeToIndex, view.RayDirection);
+  CopyTerms(rays.Origin, view.EyeOrigin);
+  CopyTerms(rays.Direction, view.EyeDirection);
 }
 
 // Gradients transform by the transposed inverse; the scale does not matter, so keep it in float's
 // range.
-void TranslateNormals(vtkMatrix4x4* eyeToIndex, SceneBlock& scene)
+void TranslateNormals(vtkMatrix4x4* eyeToIndex, glsl::Look& look)
 {
   double largest = 0.0;
   for (int row = 0; row < 3; ++row)
@@ -141,18 +148,18 @@ void TranslateNormals(vtkMatrix4x4* eyeToIndex, SceneBlock& scene)
   {
     for (int column = 0; column < 3; ++column)
     {
-      scene.NormalMatrix[4 * row + column] =
+      look.NormalMatrix[row][column] = // a column of the transposed matrix is a row
         static_cast<float>(eyeToIndex->GetElement(row, column) / largest);
     }
   }
 }
 
-void TranslateLight(vtkLight* light, vtkMatrix4x4* worldToEye, SceneLight& place)
+void TranslateLight(vtkLight* source, vtkMatrix4x4* worldToEye, glsl::Light& light)
 {
   double position[4], focus[4], way[4] = {};
-  light->GetTransformedPosition(position);
-  light->GetTransformedFocalPoint(focus);
-  const bool positional = light->GetPositional();
+  source->GetTransformedPosition(position);
+  source->GetTransformedFocalPoint(focus);
+  const bool positional = source->GetPositional();
   for (int axis = 0; axis < 3; ++axis)
   {
     way[axis] = focus[axis] - position[axis];
@@ -168,32 +175,36 @@ void TranslateLight(vtkLight* light, vtkMatrix4x4* worldToEye, SceneLight& place
   }
   for (int axis = 0; axis < 3; ++axis)
   {
-    place.Place[axis] = static_cast<float>(position[axis]);
-    place.Axis[axis] = static_cast<float>(way[axis]);
-    place.Color[axis] = static_cast<float>(light->GetDiffuseColor()[axis] * light->GetIntensity());
-    place.Highlight[axis] =
-      static_cast<float>(light->GetSpecularColor()[axis] * light->GetIntensity());
-    place.Fading[axis] = static_cast<float>(light->GetAttenuationValues()[axis]);
+    light.Position[axis] = static_cast<float>(position[axis]);
+    light.ConeAxis[axis] = static_cast<float>(way[axis]);
+    light.Diffuse[axis] =
+      static_cast<float>(source->GetDiffuseColor()[axis] * source->GetIntensity());
+    light.Specular[axis] =
+      static_cast<float>(source->GetSpecularColor()[axis] * source->GetIntensity());
   }
-  const bool spot = positional && light->GetConeAngle() < 90.0;
-  place.Place[3] = static_cast<float>(position[3]);
-  place.Color[3] = static_cast<float>(light->GetExponent());
-  place.Axis[3] =
-    spot ? static_cast<float>(std::cos(vtkMath::RadiansFromDegrees(light->GetConeAngle()))) : -2.0f;
+  const double* attenuation = source->GetAttenuationValues();
+  light.ConstantAttenuation = static_cast<float>(attenuation[0]);
+  light.LinearAttenuation = static_cast<float>(attenuation[1]);
+  light.QuadraticAttenuation = static_cast<float>(attenuation[2]);
+  light.IsPositional = positional ? 1 : 0;
+  light.IsSpot = positional && source->GetConeAngle() < 90.0 ? 1 : 0;
+  light.ConeExponent = static_cast<float>(source->GetExponent());
+  light.ConeCosine =
+    static_cast<float>(std::cos(vtkMath::RadiansFromDegrees(source->GetConeAngle())));
 }
 
-void TranslateLights(vtkRenderer* renderer, vtkMatrix4x4* worldToEye, SceneBlock& scene)
+void TranslateLights(vtkRenderer* renderer, vtkMatrix4x4* worldToEye, glsl::Look& look)
 {
   vtkCollectionSimpleIterator iterator;
   vtkLightCollection* lights = renderer->GetLights();
   lights->InitTraversal(iterator);
-  int& count = scene.Lighting[0];
+  int& count = look.NumberOfLights;
   for (vtkLight* light = lights->GetNextLight(iterator); light;
        light = lights->GetNextLight(iterator))
   {
-    if (light->GetSwitch() && count < SceneBlock::MaximumLights)
+    if (light->GetSwitch() && count < glsl::MAX_LIGHTS)
     {
-      TranslateLight(light, worldToEye, scene.Lights[count++]);
+      TranslateLight(light, worldToEye, look.Lights[count++]);
     }
   }
 }
@@ -201,16 +212,16 @@ void TranslateLights(vtkRenderer* renderer, vtkMatrix4x4* worldToEye, SceneBlock
 // Isovalues that show, in the stream's units, with their colours and opacities from the transfer
 // functions.
 void TranslateIsovalues(
-  vtkVolumeProperty* property, vtkCompressedVolume* compressed, SceneBlock& scene)
+  vtkVolumeProperty* property, vtkCompressedVolume* compressed, PipelineScene& scene)
 {
   vtkContourValues* values = property->GetIsoSurfaceValues();
-  int& count = scene.Surface[0];
+  int& count = scene.View.NumberOfIsovalues;
   for (int i = 0; i < values->GetNumberOfContours(); ++i)
   {
     const double value = values->GetValue(i);
     const double opacity =
       std::min(std::max(property->GetScalarOpacity()->GetValue(value), 0.0), 1.0);
-    if (opacity == 0.0 || count == SceneBlock::MaximumIsovalues)
+    if (opacity == 0.0 || count == glsl::MAX_ISOVALUES)
     {
       continue;
     }
@@ -224,35 +235,36 @@ void TranslateIsovalues(
       property->GetRGBTransferFunction()->GetColor(value, color);
     }
     const double stored = compressed->ToStored(value);
-    scene.Isovalues[count][0] = static_cast<float>(stored);
-    scene.Isovalues[count][1] = static_cast<float>(stored - scene.Isovalues[count][0]);
-    std::copy(color, color + 3, scene.Colors[count]);
-    scene.Colors[count][3] = static_cast<float>(opacity);
-    scene.Lighting[1] |= opacity < 1.0 ? 1 : 0;
+    glsl::Isovalue& isovalue = scene.View.Isovalues[count];
+    isovalue.High = static_cast<float>(stored);
+    isovalue.Low = static_cast<float>(stored - isovalue.High);
+    std::copy(color, color + 3, scene.Look.Colors[count].Rgb);
+    scene.Look.Colors[count].Opacity = static_cast<float>(opacity);
+    scene.Translucent = scene.Translucent || opacity < 1.0;
     ++count;
   }
   if (count == 0) // no ray meets anything
   {
-    scene.RayRange[0] = 1.0;
-    scene.RayRange[1] = 0.0;
+    scene.View.NearDistance = 1.0;
+    scene.View.FarDistance = 0.0;
   }
 }
 
 // The mapper's planes are in world coordinates.
-void TranslateClipping(vtkVolumeMapper* mapper, vtkMatrix4x4* worldToIndex, SceneBlock& scene)
+void TranslateClipping(vtkVolumeMapper* mapper, vtkMatrix4x4* worldToIndex, glsl::View& view)
 {
   vtkPlaneCollection* planes = mapper->GetClippingPlanes();
   vtkNew<vtkMatrix4x4> indexToWorld;
   vtkMatrix4x4::Invert(worldToIndex, indexToWorld);
   const int count = planes ? planes->GetNumberOfItems() : 0;
-  for (int i = 0; i < count && i < SceneBlock::MaximumClippingPlanes; ++i)
+  for (int i = 0; i < count && i < glsl::MAX_CLIPPING_PLANES; ++i)
   {
     vtkPlane* plane = planes->GetItem(i);
     double normal[3], origin[3];
     plane->GetNormal(normal);
     plane->GetOrigin(origin);
     double terms[4] = { normal[0], normal[1], normal[2], -vtkMath::Dot(normal, origin) };
-    double* translated = scene.ClippingPlanes[scene.Surface[1]++];
+    double translated[4] = {};
     for (int axis = 0; axis < 4; ++axis)
     {
       for (int row = 0; row < 4; ++row)
@@ -260,13 +272,17 @@ void TranslateClipping(vtkVolumeMapper* mapper, vtkMatrix4x4* worldToIndex, Scen
         translated[axis] += terms[row] * indexToWorld->GetElement(row, axis);
       }
     }
+    glsl::ClippingPlane& translatedPlane = view.ClippingPlanes[view.NumberOfClippingPlanes++];
+    std::copy(translated, translated + 3, translatedPlane.Normal);
+    translatedPlane.Offset = translated[3];
   }
 }
 
 // The planes between the regions lie in the image's own axes, whatever its direction matrix is.
 void TranslateCropping(
-  vtkVolumeMapper* mapper, vtkImageData* image, vtkCompressedVolume* compressed, SceneBlock& scene)
+  vtkVolumeMapper* mapper, vtkImageData* image, vtkCompressedVolume* compressed, glsl::View& view)
 {
+  view.DrawnRegions = glsl::ALL_REGIONS;
   if (!mapper->GetCropping())
   {
     return;
@@ -279,30 +295,38 @@ void TranslateCropping(
     const double origin = image->GetOrigin()[axis], spacing = image->GetSpacing()[axis];
     const double low = (planes[2 * axis] - origin) / spacing - first;
     const double high = (planes[2 * axis + 1] - origin) / spacing - first;
-    scene.CroppingLow[axis] = std::min(low, high);
-    scene.CroppingHigh[axis] = std::max(low, high);
+    view.CroppingLow[axis] = std::min(low, high);
+    view.CroppingHigh[axis] = std::max(low, high);
   }
-  scene.Surface[2] = mapper->GetCroppingRegionFlags() & SceneBlock::AllRegions;
+  view.DrawnRegions = mapper->GetCroppingRegionFlags() & glsl::ALL_REGIONS;
 }
 
-void TranslateLook(
-  vtkRenderer* renderer, vtkVolumeProperty* property, vtkMatrix4x4* worldToEye, SceneBlock& scene)
+void TranslateMaterial(vtkVolumeProperty* property, glsl::Look& look)
 {
-  scene.Material[0] = static_cast<float>(property->GetAmbient());
-  scene.Material[1] = static_cast<float>(property->GetDiffuse());
-  scene.Material[2] = static_cast<float>(property->GetSpecular());
-  scene.Material[3] = static_cast<float>(property->GetSpecularPower());
-  if (!property->GetShade())
+  look.Ambient = static_cast<float>(property->GetAmbient());
+  look.Diffuse = static_cast<float>(property->GetDiffuse());
+  look.Specular = static_cast<float>(property->GetSpecular());
+  look.SpecularPower = static_cast<float>(property->GetSpecularPower());
+}
+
+void TranslateDepths(vtkMatrix4x4* projection, glsl::Look& look)
+{
+  look.ClipZ = static_cast<float>(projection->GetElement(2, 3));
+  look.ClipZPerT = static_cast<float>(-projection->GetElement(2, 2));
+  look.ClipW = static_cast<float>(projection->GetElement(3, 3));
+  look.ClipWPerT = static_cast<float>(-projection->GetElement(3, 2));
+}
+
+void TranslateShading(vtkRenderer* renderer, vtkMatrix4x4* worldToEye, PipelineScene& scene)
+{
+  glsl::Look& look = scene.Look;
+  TranslateLights(renderer, worldToEye, look);
+  look.LitSides = renderer->GetTwoSidedLighting() ? glsl::TWO_SIDED : glsl::ONE_SIDED;
+  for (int i = 0; i < scene.View.NumberOfIsovalues && look.NumberOfLights == 0; ++i)
   {
-    return;
-  }
-  TranslateLights(renderer, worldToEye, scene);
-  scene.Lighting[3] = renderer->GetTwoSidedLighting() ? 1 : 0;
-  for (int i = 0; i < scene.Surface[0] && scene.Lighting[0] == 0; ++i)
-  {
-    for (int channel = 0; channel < 3; ++channel) // in the dark no normal is needed
+    for (float& channel : look.Colors[i].Rgb) // in the dark no normal is needed
     {
-      scene.Colors[i][channel] *= scene.Material[0];
+      channel *= look.Ambient;
     }
   }
 }
@@ -318,14 +342,30 @@ bool NearlySame(const double* a, const double* b)
   return difference <= 1e-7 * size;
 }
 
-constexpr std::size_t ExactBegins = offsetof(SceneBlock, FirstDrawn);
+bool NearlySame(const glsl::PixelVector& a, const glsl::PixelVector& b)
+{
+  return NearlySame(a.Base, b.Base) && NearlySame(a.PerX, b.PerX) && NearlySame(a.PerY, b.PerY);
 }
 
-SceneBlock TranslateScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMapper* mapper,
+bool AreSmall(const double vector[3])
+{
+  const double most = 1e200; // their sums are finite, too
+  return std::all_of(vector, vector + 3, [=](double value) { return std::abs(value) <= most; });
+}
+
+bool AreSmall(const glsl::PixelVector& vector)
+{
+  return AreSmall(vector.Base) && AreSmall(vector.PerX) && AreSmall(vector.PerY);
+}
+}
+
+PipelineScene TranslateScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMapper* mapper,
   vtkImageData* image, vtkCompressedVolume* compressed, const int viewport[4])
 {
-  SceneBlock scene;
-  std::copy(viewport, viewport + 4, scene.Image);
+  PipelineScene scene;
+  glsl::View& view = scene.View;
+  std::copy(viewport, viewport + 2, view.ImageSize);
+  std::copy(viewport + 2, viewport + 4, view.ImageOrigin);
   vtkCamera* camera = renderer->GetActiveCamera();
   vtkMatrix4x4* projection =
     camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1, 1);
@@ -337,73 +377,61 @@ SceneBlock TranslateScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMap
   const double determinant = eyeToIndex->Determinant();
   eyeToIndex->Invert();
 
-  TranslateRays(MakeEyeRays(projection, scene.Image[0], scene.Image[1]), eyeToIndex, scene);
+  TranslateRays(MakeEyeRays(projection, viewport[0], viewport[1]), eyeToIndex, view);
   if (!(determinant != 0.0)) // nothing was inverted
   {
-    std::fill_n(scene.RayDirection[0], 3, std::numeric_limits<double>::quiet_NaN());
+    std::fill_n(view.RayDirection.Base, 3, std::numeric_limits<double>::quiet_NaN());
   }
-  camera->GetClippingRange(scene.RayRange);
-  TranslatePart(image, compressed, scene);
+  camera->GetClippingRange(view.NearDistance, view.FarDistance);
+  TranslatePart(image, compressed, view);
   TranslateIsovalues(volume->GetProperty(), compressed, scene);
-  TranslateClipping(mapper, worldToIndex, scene);
-  TranslateCropping(mapper, image, compressed, scene);
+  TranslateClipping(mapper, worldToIndex, view);
+  TranslateCropping(mapper, image, compressed, view);
 
-  TranslateNormals(eyeToIndex, scene);
-  scene.DepthTerms[0] = static_cast<float>(projection->GetElement(2, 3));
-  scene.DepthTerms[1] = static_cast<float>(-projection->GetElement(2, 2));
-  scene.DepthTerms[2] = static_cast<float>(projection->GetElement(3, 3));
-  scene.DepthTerms[3] = static_cast<float>(-projection->GetElement(3, 2));
-  TranslateLook(renderer, volume->GetProperty(), worldToEye, scene);
+  TranslateNormals(eyeToIndex, scene.Look);
+  TranslateDepths(projection, scene.Look);
+  TranslateMaterial(volume->GetProperty(), scene.Look);
+  if (volume->GetProperty()->GetShade())
+  {
+    TranslateShading(renderer, worldToEye, scene);
+  }
   return scene;
 }
 
-bool HasRays(const SceneBlock& scene)
+bool HasRays(const glsl::View& view)
 {
-  const double most = 1e200; // their sums are finite, too
-  const auto isSmall = [=](double value) { return std::abs(value) <= most; };
-  const double* const origin = scene.RayOrigin[0];
-  const double* const direction = scene.RayDirection[0];
-  return std::all_of(origin, origin + 12, isSmall) &&
-    std::all_of(direction, direction + 12, isSmall);
+  return AreSmall(view.RayOrigin) && AreSmall(view.RayDirection);
 }
 
-bool SameHits(const SceneBlock& a, const SceneBlock& b)
+bool SameHits(const glsl::View& a, const glsl::View& b)
 {
-  for (int i = 0; i < 3; ++i)
+  glsl::View exact = b; // after what is compared with a tolerance has been evened out
+  for (auto vector : { &glsl::View::RayOrigin, &glsl::View::RayDirection, &glsl::View::EyeOrigin,
+         &glsl::View::EyeDirection })
   {
-    if (!NearlySame(a.RayOrigin[i], b.RayOrigin[i]) ||
-      !NearlySame(a.RayDirection[i], b.RayDirection[i]))
+    if (!NearlySame(a.*vector, b.*vector))
     {
       return false;
     }
+    exact.*vector = a.*vector;
   }
-  return NearlySame(a.RayRange, b.RayRange) &&
-    std::memcmp(a.ClippingPlanes, b.ClippingPlanes, sizeof(a.ClippingPlanes)) == 0 &&
-    std::memcmp(a.CroppingLow, b.CroppingLow, sizeof(a.CroppingLow)) == 0 &&
-    std::memcmp(a.CroppingHigh, b.CroppingHigh, sizeof(a.CroppingHigh)) == 0 &&
-    std::equal(a.Image, a.Image + 4, b.Image) && std::equal(a.Surface, a.Surface + 4, b.Surface) &&
-    std::memcmp(a.Isovalues, b.Isovalues, sizeof(a.Isovalues)) == 0;
+  const double rangeOfA[] = { a.NearDistance, a.FarDistance, 0.0 };
+  const double rangeOfB[] = { b.NearDistance, b.FarDistance, 0.0 };
+  exact.NearDistance = a.NearDistance;
+  exact.FarDistance = a.FarDistance;
+  return NearlySame(rangeOfA, rangeOfB) && std::memcmp(&a, &exact, sizeof(a)) == 0;
 }
 
-bool SameLook(const SceneBlock& a, const SceneBlock& b)
+bool SameLook(const glsl::Look& a, const glsl::Look& b)
 {
-  const char* look = reinterpret_cast<const char*>(a.NormalMatrix);
-  const std::size_t begin = offsetof(SceneBlock, NormalMatrix);
-  return std::memcmp(look, reinterpret_cast<const char*>(&b) + begin, sizeof(SceneBlock) - begin) ==
-    0;
-}
-
-void KeepHits(const SceneBlock& from, SceneBlock& to)
-{
-  std::memcpy(&to, &from, ExactBegins);
+  return std::memcmp(&a, &b, sizeof(a)) == 0;
 }
 
 namespace
 {
-// The base of a pixel's ray, or its direction: see Scene.glsl.
-double AtPixel(const double terms[3][4], int axis, double px, double py)
+double AtPixel(const glsl::PixelVector& vector, int axis, double px, double py)
 {
-  return terms[0][axis] + px * terms[1][axis] + py * terms[2][axis];
+  return vector.Base[axis] + px * vector.PerX[axis] + py * vector.PerY[axis];
 }
 
 double FiniteInverse(double d)
@@ -412,16 +440,16 @@ double FiniteInverse(double d)
 }
 
 // As in Rays.glsl.
-void ClipRay(const SceneBlock& scene, double px, double py, double& enter, double& leave)
+void ClipRay(const glsl::View& view, double px, double py, double& enter, double& leave)
 {
-  for (int i = 0; i < scene.Surface[1]; ++i)
+  for (int i = 0; i < view.NumberOfClippingPlanes; ++i)
   {
-    const double* plane = scene.ClippingPlanes[i];
-    double at = plane[3], along = 0.0;
+    const glsl::ClippingPlane& plane = view.ClippingPlanes[i];
+    double at = plane.Offset, along = 0.0;
     for (int axis = 0; axis < 3; ++axis)
     {
-      at += plane[axis] * AtPixel(scene.RayOrigin, axis, px, py);
-      along += plane[axis] * AtPixel(scene.RayDirection, axis, px, py);
+      at += plane.Normal[axis] * AtPixel(view.RayOrigin, axis, px, py);
+      along += plane.Normal[axis] * AtPixel(view.RayDirection, axis, px, py);
     }
     const double t = -at * FiniteInverse(along);
     enter = along > 0.0 ? std::max(enter, t) : enter;
@@ -430,43 +458,43 @@ void ClipRay(const SceneBlock& scene, double px, double py, double& enter, doubl
 }
 }
 
-double HitParameter(const SceneBlock& scene, int x, int y, std::uint32_t key)
+double HitParameter(const glsl::View& view, int x, int y, std::uint32_t key)
 {
   if (key == 0xFFFFFFFFu)
   {
     return std::numeric_limits<double>::infinity();
   }
   const double px = x + 0.5, py = y + 0.5;
-  double enter = scene.RayRange[0], leave = scene.RayRange[1];
+  double enter = view.NearDistance, leave = view.FarDistance;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double origin = AtPixel(scene.RayOrigin, axis, px, py);
-    const double inverse = FiniteInverse(AtPixel(scene.RayDirection, axis, px, py));
-    const double first = (scene.FirstDrawn[axis] - origin) * inverse;
-    const double last = (scene.LastDrawn[axis] - origin) * inverse;
+    const double origin = AtPixel(view.RayOrigin, axis, px, py);
+    const double inverse = FiniteInverse(AtPixel(view.RayDirection, axis, px, py));
+    const double first = (view.FirstDrawn[axis] - origin) * inverse;
+    const double last = (view.LastDrawn[axis] - origin) * inverse;
     enter = std::max(enter, std::min(first, last));
     leave = std::min(leave, std::max(first, last));
   }
-  ClipRay(scene, px, py, enter, leave);
+  ClipRay(view, px, py, enter, leave);
   return enter + (key + 0.5) / 4294967040.0 * (leave - enter);
 }
 
-double RayLength(const SceneBlock& scene, int x, int y, double t)
+double RayLength(const glsl::View& view, int x, int y, double t)
 {
   double squares = 0.0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double eye = AtPixel(scene.EyeDirection, axis, x + 0.5, y + 0.5);
+    const double eye = AtPixel(view.EyeDirection, axis, x + 0.5, y + 0.5);
     squares += eye * eye;
   }
   return t * std::sqrt(squares);
 }
 
-void EyePosition(const SceneBlock& scene, int x, int y, double t, double position[3])
+void EyePosition(const glsl::View& view, int x, int y, double t, double position[3])
 {
   for (int axis = 0; axis < 3; ++axis)
   {
-    position[axis] = AtPixel(scene.EyeOrigin, axis, x + 0.5, y + 0.5) +
-      t * AtPixel(scene.EyeDirection, axis, x + 0.5, y + 0.5);
+    position[axis] = AtPixel(view.EyeOrigin, axis, x + 0.5, y + 0.5) +
+      t * AtPixel(view.EyeDirection, axis, x + 0.5, y + 0.5);
   }
 }

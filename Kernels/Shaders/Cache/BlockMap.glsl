@@ -71,7 +71,7 @@ uvec3 BlockOffsets()
 #ifdef HAS_CACHE_MAP
   return uvec3(0u);
 #else
-  return 64u * uvec3(1, scene.Blocks.x, scene.Blocks.x * scene.Blocks.y);
+  return 64u * uvec3(1, volume.Blocks.x, volume.Blocks.x * volume.Blocks.y);
 #endif
 }
 

@@ -13,7 +13,7 @@ void main()
   uint lane = gl_LocalInvocationIndex;
   groupAges[lane] = 0u;
   barrier();
-  for (uint page = 256u * gl_WorkGroupID.x + lane; page < scene.Cache.y; page += 256u * gl_NumWorkGroups.x)
+  for (uint page = 256u * gl_WorkGroupID.x + lane; page < cache.MapPages; page += 256u * gl_NumWorkGroups.x)
   {
     if (mapPages[page].Cell != NONE)
     {

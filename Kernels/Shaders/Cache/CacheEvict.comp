@@ -41,14 +41,14 @@ void Evict(uint page)
     uint slot = mapPages[page].Slots[i];
     if (slot != NONE)
     {
-      cacheFreeSlots[to % (2u * scene.Cache.x)] = slot;
+      cacheFreeSlots[to % (2u * cache.Slots)] = slot;
       mapPages[page].Slots[i] = NONE;
       ++to;
     }
   }
   macrocells[mapPages[page].Cell].Page = NONE;
   mapPages[page].Cell = NONE;
-  mapPages[(control.FreePagesBegin + atomicAdd(control.FreePages, 1u)) % scene.Cache.y].Free = page;
+  mapPages[(control.FreePagesBegin + atomicAdd(control.FreePages, 1u)) % cache.MapPages].Free = page;
 }
 
 // One lane a page.
@@ -60,7 +60,7 @@ void main()
   }
   barrier();
   uint first = 64u * gl_WorkGroupID.x + gl_LocalInvocationIndex;
-  for (uint page = first; page < scene.Cache.y; page += 64u * gl_NumWorkGroups.x)
+  for (uint page = first; page < cache.MapPages; page += 64u * gl_NumWorkGroups.x)
   {
     if (Goes(page))
     {

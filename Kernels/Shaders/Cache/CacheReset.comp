@@ -10,31 +10,31 @@ void main()
 {
   uint first = 256u * FoldedGroup() + gl_LocalInvocationIndex;
   uint stride = 256u * gl_NumWorkGroups.x * gl_NumWorkGroups.y;
-  for (uint i = first; i < uint(scene.Macrocells.w); i += stride)
+  for (uint i = first; i < volume.NumberOfMacrocells; i += stride)
   {
     macrocells[i].Page = NONE;
     macrocells[i].Requested[0] = 0u;
     macrocells[i].Requested[1] = 0u;
   }
-  for (uint i = first; i < scene.Cache.x; i += stride)
+  for (uint i = first; i < cache.Slots; i += stride)
   {
     cacheFreeSlots[i] = i;
   }
-  for (uint i = first; i < scene.Cache.y; i += stride)
+  for (uint i = first; i < cache.MapPages; i += stride)
   {
     mapPages[i].Cell = NONE;
     mapPages[i].Free = i;
   }
-  for (uint i = first; i < 64u * scene.Cache.y; i += stride)
+  for (uint i = first; i < 64u * cache.MapPages; i += stride)
   {
     mapPages[i >> 6].Slots[i & 63u] = NONE;
   }
   if (first == 0u)
   {
     control.FreeSlotsBegin = 0u;
-    control.FreeSlots = scene.Cache.x;
+    control.FreeSlots = cache.Slots;
     control.FreePagesBegin = 0u;
-    control.FreePages = scene.Cache.y;
+    control.FreePages = cache.MapPages;
     control.EvictGroups.X = 0u;
   }
 }

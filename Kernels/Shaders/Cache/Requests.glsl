@@ -15,7 +15,7 @@ uint TakePage(uint cell)
   {
     return NONE;
   }
-  uint page = mapPages[(control.FreePagesBegin + at) % scene.Cache.y].Free;
+  uint page = mapPages[(control.FreePagesBegin + at) % cache.MapPages].Free;
   mapPages[page].Cell = cell;
   mapPages[page].Stamp = control.PassSerial;
   mapPages[page].Used = 0u;
@@ -33,7 +33,7 @@ uint ReserveRequests(uint count)
 // What is behind the end of the list is refused, and may be asked for again.
 void ListRequest(uint at, uint block)
 {
-  if (at < scene.Cache.x)
+  if (at < cache.Slots)
   {
     cacheRequests[at] = block;
     return;

@@ -6,7 +6,7 @@
 #define PALETTE 256
 
 // Colours over a range of values: low, 1 / (high - low).
-layout(std140, binding = 1) uniform Palette
+layout(std140, binding = PALETTE_BINDING) uniform Palette
 {
   vec4 Range;
   vec4 Colors[PALETTE];
@@ -25,19 +25,21 @@ vec3 PaletteColor(float value)
 // What of a light arrives, and from where.
 float Attenuation(Light light, vec3 position, out vec3 toLight)
 {
-  if (light.Place.w == 0.0)
+  if (light.IsPositional == 0)
   {
-    toLight = light.Place.xyz;
+    toLight = light.Position;
     return 1.0;
   }
-  vec3 way = light.Place.xyz - position;
+  vec3 way = light.Position - position;
   float distance = length(way);
   toLight = way / distance;
-  float attenuation = 1.0 / dot(light.Fading.xyz, vec3(1.0, distance, distance * distance));
-  if (light.Axis.w >= -1.0)
+  vec3 fading =
+    vec3(light.ConstantAttenuation, light.LinearAttenuation, light.QuadraticAttenuation);
+  float attenuation = 1.0 / dot(fading, vec3(1.0, distance, distance * distance));
+  if (light.IsSpot != 0)
   {
-    float cosine = dot(-toLight, light.Axis.xyz);
-    attenuation *= cosine >= light.Axis.w ? pow(cosine, light.Color.w) : 0.0;
+    float cosine = dot(-toLight, light.ConeAxis);
+    attenuation *= cosine >= light.ConeCosine ? pow(cosine, light.ConeExponent) : 0.0;
   }
   return attenuation;
 }
@@ -45,24 +47,24 @@ float Attenuation(Light light, vec3 position, out vec3 toLight)
 // The side of the surface that counts for a light.
 vec3 Facing(vec3 normal, vec3 toLight, vec3 toViewer)
 {
-  vec3 there = scene.Lighting.w == LIT_LIKE_MESHES ? toViewer : toLight;
-  return scene.Lighting.w != ONE_SIDED && dot(normal, there) > 0.0 ? normal : -normal;
+  vec3 there = look.LitSides == LIT_LIKE_MESHES ? toViewer : toLight;
+  return look.LitSides != ONE_SIDED && dot(normal, there) > 0.0 ? normal : -normal;
 }
 
 vec3 Illuminate(vec3 position, vec3 normal, vec3 toViewer, vec3 surfaceColor)
 {
-  vec3 color = scene.Material.x * surfaceColor;
-  for (int i = 0; i < scene.Lighting.x; ++i)
+  vec3 color = look.Ambient * surfaceColor;
+  for (int i = 0; i < look.NumberOfLights; ++i)
   {
     vec3 toLight;
-    float attenuation = Attenuation(scene.Lights[i], position, toLight);
+    float attenuation = Attenuation(look.Lights[i], position, toLight);
     vec3 facing = Facing(normal, toLight, toViewer);
     float cosine = dot(facing, toLight);
     if (cosine > 0.0)
     {
       float highlight = max(dot(reflect(-toLight, facing), toViewer), 0.0);
-      vec3 diffuse = scene.Material.y * cosine * scene.Lights[i].Color.rgb * surfaceColor;
-      vec3 specular = scene.Material.z * pow(highlight, scene.Material.w) * scene.Lights[i].Highlight.rgb;
+      vec3 diffuse = look.Diffuse * cosine * look.Lights[i].Diffuse * surfaceColor;
+      vec3 specular = look.Specular * pow(highlight, look.SpecularPower) * look.Lights[i].Specular;
       color += attenuation * (diffuse + specular);
     }
   }
@@ -76,7 +78,7 @@ vec3 Shade(uint pixel, float t, vec3 normal, int surface)
 #ifdef COLORED
   vec3 color = PaletteColor(ColorValueOf(pixel));
 #else
-  vec3 color = scene.Colors[surface].rgb;
+  vec3 color = look.Colors[surface].Rgb;
 #endif
 #ifdef LIT
   vec3 direction = EyeRayDirection(pixel);

@@ -14,7 +14,7 @@ layout(location = 0) out vec4 fragmentColor;
 vec3 CellColor(uint pixel, float t, int part)
 {
   Ray ray = CameraRay(pixel);
-  ivec3 cells = scene.Samples.xyz - 1;
+  ivec3 cells = volume.Samples - 1;
   uvec3 cell = uvec3(clamp(ivec3(floor(ray.Origin + double(t) * ray.Direction)), ivec3(0), cells - 1));
   uint row = cell.y + uint(cells.y) * cell.z;
   uint high, low, carry;

@@ -2,12 +2,12 @@
 
 uint FragmentPixel()
 {
-  ivec2 xy = ivec2(gl_FragCoord.xy) - scene.Image.zw;
-  return uint(xy.y * scene.Image.x + xy.x);
+  ivec2 xy = ivec2(gl_FragCoord.xy) - view.ImageOrigin;
+  return uint(xy.y * view.ImageSize.x + xy.x);
 }
 
 float WindowDepth(float t)
 {
-  float z = (scene.DepthTerms.x + t * scene.DepthTerms.y) / (scene.DepthTerms.z + t * scene.DepthTerms.w);
+  float z = (look.ClipZ + t * look.ClipZPerT) / (look.ClipW + t * look.ClipWPerT);
   return clamp(0.5 * z + 0.5, 0.0, 1.0);
 }

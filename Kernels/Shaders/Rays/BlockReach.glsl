@@ -6,5 +6,5 @@ ivec3 DualGridReach(Ray ray, ivec3 block, double t0, double t1)
   bvec3 forward = greaterThan(ray.Step, ivec3(0));
   ivec3 reached = ivec3(lessThanEqual(last, dvec3(t1))) * ivec3(forward) +
     ivec3(greaterThan(last, dvec3(t0))) * ivec3(not(forward));
-  return min(reached, scene.Blocks.xyz - 1 - block);
+  return min(reached, volume.Blocks - 1 - block);
 }

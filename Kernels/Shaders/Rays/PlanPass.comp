@@ -15,7 +15,7 @@ layout(local_size_x = 1) in;
 
 uint Pixels()
 {
-  return uint(scene.Image.x * scene.Image.y);
+  return uint(view.ImageSize.x * view.ImageSize.y);
 }
 
 void OpenImage()
@@ -42,18 +42,18 @@ void OpenImage()
 void CloseCache(inout PassRecord record)
 {
   control.RefusedBefore = control.Refused;
-  uint taken = min(min(control.Requests, scene.Cache.x), control.FreeSlots);
+  uint taken = min(min(control.Requests, cache.Slots), control.FreeSlots);
   uint decoded = taken - control.ReturnedSlots;
   control.Refused = control.Requests - decoded;
-  control.FreeSlotsBegin = (control.FreeSlotsBegin + taken) % (2u * scene.Cache.x);
+  control.FreeSlotsBegin = (control.FreeSlotsBegin + taken) % (2u * cache.Slots);
   control.FreeSlots -= decoded;
   control.TouchedSlots += decoded;
   uint pages = min(control.TakenPages, control.FreePages);
-  control.FreePagesBegin = (control.FreePagesBegin + pages) % scene.Cache.y;
+  control.FreePagesBegin = (control.FreePagesBegin + pages) % cache.MapPages;
   control.FreePages -= pages;
   record.DecodedBlocks = decoded;
   record.RefusedBlocks = control.Refused;
-  record.CachedBlocks = scene.Cache.x - control.FreeSlots;
+  record.CachedBlocks = cache.Slots - control.FreeSlots;
   record.TouchedSlots = control.TouchedSlots;
 }
 #endif
@@ -68,7 +68,7 @@ void ClosePass()
   record.VisibleBlocks = control.VisibleBlocks;
   record.ActiveBlocks = control.ActiveBlocks;
   record.DecodedBlocks = 0u;
-  record.CachedBlocks = uint(scene.Blocks.w);
+  record.CachedBlocks = volume.NumberOfBlocks;
   record.RemainingRays = control.NextCarried + control.GoingOn + control.NextUnlit + min(PixelsInTiles() - control.Fresh, Pixels());
   record.RefusedBlocks = 0u;
   record.TouchedSlots = 0u;
@@ -90,7 +90,7 @@ void PlanWindow()
 {
   uint all = PixelsInTiles();
   uint first = control.Window < all ? min(control.FirstLive, control.Fresh) : 0u;
-  bool again = control.Refused > 0u && control.RefusedBefore > 0u && scene.Cache.w != 0u;
+  bool again = control.Refused > 0u && control.RefusedBefore > 0u && cache.CannotGrow != 0u;
   control.Window = again ? max(control.Window / 4u, LEAST_WINDOW) : min(2u * control.Window, all);
   control.Frontier = control.Window < all ? min(first + control.Window, all) : all;
   control.FirstLive = all; // the pass finds it anew
@@ -100,11 +100,11 @@ void PlanWindow()
 // are counted while pages are evicted: slots, or where pages are short, pages.
 void PlanEviction()
 {
-  uint slots = scene.Cache.x;
-  uint pages = scene.Cache.y;
+  uint slots = cache.Slots;
+  uint pages = cache.MapPages;
   // there is a slot for every block, a page for every macrocell
-  bool allSlots = slots >= uint(scene.Blocks.w);
-  bool allPages = pages >= uint(scene.Macrocells.w);
+  bool allSlots = slots >= volume.NumberOfBlocks;
+  bool allPages = pages >= volume.NumberOfMacrocells;
   uint enoughSlots = control.Refused > 0u ? slots / 2u : max(slots / 8u, min(control.Requests, slots / 2u));
   uint enoughPages = control.Refused > 0u ? pages / 2u : max(pages / 8u, min(control.TakenPages, pages / 2u));
   bool fewSlots = !allSlots && control.FreeSlots < enoughSlots;
@@ -146,7 +146,7 @@ uvec2 Folded(uint groups)
 void PlanDispatches()
 {
   bool carried = control.Rays == control.Carried + control.Again;
-  bool few = carried && scene.Policy.x > 0u && control.Rays <= Pixels() / scene.Policy.x;
+  bool few = carried && cache.PixelsPerStraggler > 0u && control.Rays <= Pixels() / cache.PixelsPerStraggler;
   uvec2 groups = few ? Folded(control.Rays) : Folded((control.Rays + CAST_GROUP - 1u) / CAST_GROUP);
   control.CastGroups.X = few ? 0u : groups.x;
   control.CastGroups.Y = groups.y;

@@ -43,17 +43,17 @@ double FiniteInverse(double d)
 // Centre of a pixel; pixels are numbered in rows from the bottom left.
 dvec2 PixelCentre(uint pixel)
 {
-  return dvec2(double(pixel % uint(scene.Image.x)), double(pixel / uint(scene.Image.x))) + 0.5LF;
+  return dvec2(double(pixel % uint(view.ImageSize.x)), double(pixel / uint(view.ImageSize.x))) + 0.5LF;
 }
 
 #ifdef CLIPPED
 void ClipRay(inout Ray ray)
 {
-  for (int i = 0; i < scene.Surface.y; ++i)
+  for (int i = 0; i < view.NumberOfClippingPlanes; ++i)
   {
-    dvec4 plane = scene.ClippingPlanes[i];
-    precise double at = dot(plane.xyz, ray.Origin) + plane.w;
-    precise double along = dot(plane.xyz, ray.Direction);
+    ClippingPlane plane = view.ClippingPlanes[i];
+    precise double at = dot(plane.Normal, ray.Origin) + plane.Offset;
+    precise double along = dot(plane.Normal, ray.Direction);
     precise double t = -at * FiniteInverse(along);
     ray.Enter = along > 0.0LF ? max(ray.Enter, t) : ray.Enter;
     ray.Leave = along < 0.0LF ? min(ray.Leave, t) : ray.Leave;
@@ -67,8 +67,8 @@ void ClipRay(inout Ray ray)
 double ObstacleT(float depth)
 {
   double z = 2.0LF * double(depth) - 1.0LF;
-  dvec4 terms = dvec4(scene.DepthTerms);
-  return (terms.x - z * terms.z) / (z * terms.w - terms.y);
+  return (double(look.ClipZ) - z * double(look.ClipW)) /
+    (z * double(look.ClipWPerT) - double(look.ClipZPerT));
 }
 #endif
 
@@ -77,17 +77,17 @@ Ray CameraRay(uint pixel)
 {
   dvec2 at = PixelCentre(pixel);
   Ray ray;
-  precise dvec3 origin = scene.RayOrigin[0].xyz + at.x * scene.RayOrigin[1].xyz + at.y * scene.RayOrigin[2].xyz;
+  precise dvec3 origin = view.RayOrigin.Base + at.x * view.RayOrigin.PerX + at.y * view.RayOrigin.PerY;
   precise dvec3 direction =
-    scene.RayDirection[0].xyz + at.x * scene.RayDirection[1].xyz + at.y * scene.RayDirection[2].xyz;
+    view.RayDirection.Base + at.x * view.RayDirection.PerX + at.y * view.RayDirection.PerY;
   ray.Origin = origin;
   ray.Direction = direction;
   ray.Inverse = dvec3(FiniteInverse(direction.x), FiniteInverse(direction.y), FiniteInverse(direction.z));
   ray.Step = 1 - 2 * ivec3(lessThan(direction, dvec3(0.0LF)));
-  dvec3 first = PlanesT(ray, scene.FirstDrawn.xyz);
-  dvec3 last = PlanesT(ray, scene.LastDrawn.xyz);
-  ray.Enter = max(LargestOf(min(first, last)), scene.RayRange.x);
-  ray.Leave = min(SmallestOf(max(first, last)), scene.RayRange.y);
+  dvec3 first = PlanesT(ray, view.FirstDrawn);
+  dvec3 last = PlanesT(ray, view.LastDrawn);
+  ray.Enter = max(LargestOf(min(first, last)), view.NearDistance);
+  ray.Leave = min(SmallestOf(max(first, last)), view.FarDistance);
 #ifdef CLIPPED
   ClipRay(ray);
 #endif
@@ -101,13 +101,13 @@ Ray CameraRay(uint pixel)
 vec3 EyeRayOrigin(uint pixel)
 {
   dvec2 at = PixelCentre(pixel);
-  return vec3(scene.EyeOrigin[0].xyz + at.x * scene.EyeOrigin[1].xyz + at.y * scene.EyeOrigin[2].xyz);
+  return vec3(view.EyeOrigin.Base + at.x * view.EyeOrigin.PerX + at.y * view.EyeOrigin.PerY);
 }
 
 vec3 EyeRayDirection(uint pixel)
 {
   dvec2 at = PixelCentre(pixel);
-  return vec3(scene.EyeDirection[0].xyz + at.x * scene.EyeDirection[1].xyz + at.y * scene.EyeDirection[2].xyz);
+  return vec3(view.EyeDirection.Base + at.x * view.EyeDirection.PerX + at.y * view.EyeDirection.PerY);
 }
 
 // ---- tile order: pixels in tiles of 8 x 8, so that neighbours in a work group are neighbours in the image
@@ -118,29 +118,29 @@ uint Tiles(int pixels)
 
 uint PixelsInTiles()
 {
-  return 64u * Tiles(scene.Image.x) * Tiles(scene.Image.y);
+  return 64u * Tiles(view.ImageSize.x) * Tiles(view.ImageSize.y);
 }
 
 // NONE for those parts of the last tiles that stick out of the image.
 uint PixelInTileOrder(uint order)
 {
   uint tile = order >> 6;
-  uint x = 8u * (tile % Tiles(scene.Image.x)) + (order & 7u);
-  uint y = 8u * (tile / Tiles(scene.Image.x)) + ((order >> 3) & 7u);
-  return x < uint(scene.Image.x) && y < uint(scene.Image.y) ? y * uint(scene.Image.x) + x : NONE;
+  uint x = 8u * (tile % Tiles(view.ImageSize.x)) + (order & 7u);
+  uint y = 8u * (tile / Tiles(view.ImageSize.x)) + ((order >> 3) & 7u);
+  return x < uint(view.ImageSize.x) && y < uint(view.ImageSize.y) ? y * uint(view.ImageSize.x) + x : NONE;
 }
 
 uint TileOrderOf(uint pixel)
 {
-  uint x = pixel % uint(scene.Image.x);
-  uint y = pixel / uint(scene.Image.x);
-  return 64u * ((y >> 3) * Tiles(scene.Image.x) + (x >> 3)) + 8u * (y & 7u) + (x & 7u);
+  uint x = pixel % uint(view.ImageSize.x);
+  uint y = pixel / uint(view.ImageSize.x);
+  return 64u * ((y >> 3) * Tiles(view.ImageSize.x) + (x >> 3)) + 8u * (y & 7u) + (x & 7u);
 }
 
 // Blocks that each of so many rays may ask for (N_spec, section 4).
 uint Speculation(uint rays)
 {
-  return clamp(ImagePixels() / (scene.Policy.y * max(rays, 1u)), 1u, scene.Cache.z);
+  return clamp(ImagePixels() / (PIXELS_PER_BLOCK_AHEAD * max(rays, 1u)), 1u, cache.SpeculationLimit);
 }
 
 // ---- hit keys: unsigned integers in the order of t

@@ -5,7 +5,7 @@
 // Blocks that hold cells; a last block of a single sample holds none.
 ivec3 LastCellBlock()
 {
-  return (scene.Samples.xyz - 2) / 4;
+  return (volume.Samples - 2) / 4;
 }
 
 // Planes through which the ray enters and leaves element `e` of a grid of `size` voxels an element.
@@ -32,9 +32,9 @@ double BlockExit(Ray ray, ivec3 block)
 // Does a range hold both a value below the isovalue and one that is not?
 bool Straddles(float low, float high, int surface)
 {
-  vec4 isovalue = scene.Isovalues[surface];
-  precise float below = (low - isovalue.x) - isovalue.y;
-  precise float above = (high - isovalue.x) - isovalue.y;
+  Isovalue isovalue = view.Isovalues[surface];
+  precise float below = (low - isovalue.High) - isovalue.Low;
+  precise float above = (high - isovalue.High) - isovalue.Low;
   return below < 0.0 && above >= 0.0;
 }
 
@@ -42,7 +42,7 @@ bool Straddles(float low, float high, int surface)
 bool Straddles(float low, float high)
 {
 #ifdef SEVERAL_ISOVALUES
-  for (int i = 0; i < scene.Surface.x; ++i)
+  for (int i = 0; i < view.NumberOfIsovalues; ++i)
   {
     if (Straddles(low, high, i))
     {
@@ -117,13 +117,13 @@ bool SkipMacrocell(Ray ray, inout ivec3 block)
 int CroppingRegion(dvec3 point)
 {
   ivec3 side =
-    ivec3(greaterThan(point, scene.CroppingLow.xyz)) + ivec3(greaterThan(point, scene.CroppingHigh.xyz));
+    ivec3(greaterThan(point, view.CroppingLow)) + ivec3(greaterThan(point, view.CroppingHigh));
   return side.x + 3 * side.y + 9 * side.z;
 }
 
 bool Drawn(int region)
 {
-  return (scene.Surface.z >> region & 1) != 0;
+  return (view.DrawnRegions >> region & 1) != 0;
 }
 
 // Does a block lie in one region, as a whole, which is not drawn?

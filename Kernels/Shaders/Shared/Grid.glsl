@@ -2,24 +2,24 @@
 
 ivec3 BlockCoordinates(uint block)
 {
-  uint slice = uint(scene.Blocks.x) * uint(scene.Blocks.y);
+  uint slice = uint(volume.Blocks.x) * uint(volume.Blocks.y);
   uint inSlice = block % slice;
-  return ivec3(inSlice % uint(scene.Blocks.x), inSlice / uint(scene.Blocks.x), block / slice);
+  return ivec3(inSlice % uint(volume.Blocks.x), inSlice / uint(volume.Blocks.x), block / slice);
 }
 
 uint BlockIndex(ivec3 b)
 {
-  return uint(b.x) + uint(scene.Blocks.x) * (uint(b.y) + uint(scene.Blocks.y) * uint(b.z));
+  return uint(b.x) + uint(volume.Blocks.x) * (uint(b.y) + uint(volume.Blocks.y) * uint(b.z));
 }
 
 bool InGrid(ivec3 b)
 {
-  return all(greaterThanEqual(b, ivec3(0))) && all(lessThan(b, scene.Blocks.xyz));
+  return all(greaterThanEqual(b, ivec3(0))) && all(lessThan(b, volume.Blocks));
 }
 
 uint MacrocellIndex(ivec3 c)
 {
-  return uint(c.x) + uint(scene.Macrocells.x) * (uint(c.y) + uint(scene.Macrocells.y) * uint(c.z));
+  return uint(c.x) + uint(volume.Macrocells.x) * (uint(c.y) + uint(volume.Macrocells.y) * uint(c.z));
 }
 
 // Number of a block within its macrocell.
@@ -33,9 +33,9 @@ uint LocalIndex(ivec3 block)
 uint NumberOfSlots()
 {
 #ifdef HAS_CACHE_MAP
-  return scene.Cache.x;
+  return cache.Slots;
 #else
-  return uint(scene.Blocks.w);
+  return volume.NumberOfBlocks;
 #endif
 }
 

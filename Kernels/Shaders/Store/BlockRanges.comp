@@ -65,7 +65,7 @@ void LoadSamples(ivec3 firstBlock)
   {
     ivec3 local = ivec3(i % 5u, (i / 5u) % 5u, i / 25u);
     ivec3 block = firstBlock + local;
-    if (all(lessThan(block, scene.Blocks.xyz)))
+    if (all(lessThan(block, volume.Blocks)))
     {
       LoadBlock(local, BlockIndex(block));
     }
@@ -103,7 +103,7 @@ vec2 DualGridRange(ivec3 firstBlock, ivec3 local)
 {
   vec2 range = vec2(uintBitsToFloat(0x7F800000u), -uintBitsToFloat(0x7F800000u));
   ivec3 first = 4 * (firstBlock + local);
-  ivec3 last = min(first + 4, scene.Samples.xyz - 1);
+  ivec3 last = min(first + 4, volume.Samples - 1);
   if (any(greaterThanEqual(first, last)))
   {
     return range;
@@ -177,7 +177,7 @@ uvec2 MacrocellsOfDispatch()
 #ifdef BINDING_STREAM
   return uvec2(segment[4], segment[4] + segment[5]);
 #else
-  return uvec2(0u, uint(scene.Macrocells.w));
+  return uvec2(0u, volume.NumberOfMacrocells);
 #endif
 }
 
@@ -187,9 +187,9 @@ void main()
   uvec2 cells = MacrocellsOfDispatch();
   for (uint cell = cells.x + FoldedGroup(); cell < cells.y; cell += gl_NumWorkGroups.x * gl_NumWorkGroups.y)
   {
-    ivec3 coarse = ivec3(cell % uint(scene.Macrocells.x),
-      (cell / uint(scene.Macrocells.x)) % uint(scene.Macrocells.y),
-      cell / (uint(scene.Macrocells.x) * uint(scene.Macrocells.y)));
+    ivec3 coarse = ivec3(cell % uint(volume.Macrocells.x),
+      (cell / uint(volume.Macrocells.x)) % uint(volume.Macrocells.y),
+      cell / (uint(volume.Macrocells.x) * uint(volume.Macrocells.y)));
     LoadSamples(4 * coarse);
     for (uint i = lane; i < 64u; i += LANES)
     {

@@ -12,9 +12,9 @@ bool InSegment(uint block)
 uint BlockBits()
 {
 #ifdef DECODES_COLORS
-  return uint(scene.Surface.w);
+  return uint(volume.ColorBlockBits);
 #else
-  return uint(scene.Samples.w);
+  return uint(volume.BlockBits);
 #endif
 }
 

@@ -24,7 +24,7 @@ uint SlotFor(uint i, uint block)
   {
     return NONE;
   }
-  uint ring = 2u * scene.Cache.x;
+  uint ring = 2u * cache.Slots;
   uint slot = cacheFreeSlots[(control.FreeSlotsBegin + i) % ring];
   uint page = macrocells[cell].Page;
   if (page == NONE)

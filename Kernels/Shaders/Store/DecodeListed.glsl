@@ -5,9 +5,9 @@
 uint NumberOfBlocks()
 {
 #ifdef HAS_CACHE_MAP
-  return min(control.Requests, scene.Cache.x);
+  return min(control.Requests, cache.Slots);
 #else
-  return uint(scene.Blocks.w);
+  return volume.NumberOfBlocks;
 #endif
 }
 

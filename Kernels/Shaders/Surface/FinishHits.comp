@@ -71,7 +71,7 @@ uint Finish(uint pixel)
 #endif
   Hit hit = HitOf(pixel);
   vec3 color = Shade(pixel, float(HitT(ray, hit.Key)), normal, hit.Surface);
-  return AddLayer(pixel, color, scene.Colors[hit.Surface].w) ? GOES_ON : DONE;
+  return AddLayer(pixel, color, look.Colors[hit.Surface].Opacity) ? GOES_ON : DONE;
 }
 #else
 uint Finish(uint pixel)

@@ -13,7 +13,7 @@ const Hit MISS = Hit(NO_HIT, 0);
 
 uint ImagePixels()
 {
-  return uint(scene.Image.x * scene.Image.y);
+  return uint(view.ImageSize.x * view.ImageSize.y);
 }
 
 #ifdef BINDING_HITS

@@ -24,7 +24,7 @@ vec4 LoadSamples(uvec4 at)
 // In sixteenths: nothing overflows that is made of it on the way to a root, and a power of two changes no other bit.
 vec4 Excess(vec4 values, int surface)
 {
-  vec2 isovalue = 0.0625 * scene.Isovalues[surface].xy;
+  vec2 isovalue = 0.0625 * vec2(view.Isovalues[surface].High, view.Isovalues[surface].Low);
   precise vec4 excess = (0.0625 * values - isovalue.x) - isovalue.y;
   return excess;
 }
@@ -69,7 +69,7 @@ Corners LoadCorners(ivec3 cell)
 bool HoldsSurface(Corners w)
 {
 #ifdef SEVERAL_ISOVALUES
-  for (int i = 0; i < scene.Surface.x; ++i)
+  for (int i = 0; i < view.NumberOfIsovalues; ++i)
   {
     if (Straddle(Excess(w, i)))
     {
@@ -168,7 +168,7 @@ bool IntersectCell(Ray ray, ivec3 cell, Corners w, double t0, double t1, dvec3 e
   vec3 u1 = LocalCoordinates(ray, cell, t1, leaving, true);
 #ifdef SEVERAL_ISOVALUES
   hit = MISS;
-  for (int i = 0; i < scene.Surface.x; ++i)
+  for (int i = 0; i < view.NumberOfIsovalues; ++i)
   {
     Hit other = FirstHit(ray, CubicAlong(Excess(w, i), u0, u1), t0, t1, i);
     hit = Before(other, hit) ? other : hit;

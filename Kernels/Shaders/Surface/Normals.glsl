@@ -12,7 +12,7 @@ SurfacePoint PointOf(Ray ray, uint key)
 {
   dvec3 p = ray.Origin + HitT(ray, key) * ray.Direction;
   SurfacePoint hit;
-  hit.Cell = ivec3(clamp(floor(p), dvec3(0.0LF), dvec3(scene.Samples.xyz - 2)));
+  hit.Cell = ivec3(clamp(floor(p), dvec3(0.0LF), dvec3(volume.Samples - 2)));
   hit.Local = clamp(vec3(p - dvec3(hit.Cell)), vec3(0.0), vec3(1.0));
   return hit;
 }
@@ -25,7 +25,7 @@ ivec3 FirstStencilBlock(ivec3 cell)
 
 ivec3 LastStencilBlock(ivec3 cell)
 {
-  return min(cell + 2, scene.Samples.xyz - 1) >> 2;
+  return min(cell + 2, volume.Samples - 1) >> 2;
 }
 
 // For the four planes of samples from one before the cell to one behind it, on each axis: what they add to the index of
@@ -40,7 +40,7 @@ struct Stencil
 
 Stencil PlaceStencil(ivec3 cell)
 {
-  ivec3 end = scene.Samples.xyz - 1;
+  ivec3 end = volume.Samples - 1;
   ivec3 before = max(cell - 1, ivec3(0));
   ivec3 behind = min(cell + 2, end);
   uvec3 a = SampleOffsets(before);
@@ -101,7 +101,7 @@ uint HiddenAround(ivec3 cell)
   uint around = 0u;
   for (int i = 0; i < 27; ++i)
   {
-    ivec3 other = clamp(cell + ivec3(i % 3, i / 3 % 3, i / 9) - 1, ivec3(0), scene.Samples.xyz - 2);
+    ivec3 other = clamp(cell + ivec3(i % 3, i / 3 % 3, i / 9) - 1, ivec3(0), volume.Samples - 2);
 #ifdef HAS_CACHE_MAP
     uint slot = SlotAt(notEqual(other >> 2, first));
 #else
@@ -159,7 +159,7 @@ vec3 Gradient(SurfacePoint hit)
   // differences on the four edges in the axis' direction, at their near and their far ends; over two voxels, but at the
   // volume's border over one
   vec3 near = mix(vec3(1.0), vec3(2.0), equal(hit.Cell, ivec3(0)));
-  vec3 far = mix(vec3(1.0), vec3(2.0), equal(hit.Cell + 2, scene.Samples.xyz));
+  vec3 far = mix(vec3(1.0), vec3(2.0), equal(hit.Cell + 2, volume.Samples));
   vec4 nearX = near.x * (vec4(low.yw, high.yw) - beforeX);
   vec4 farX = far.x * (behindX - vec4(low.xz, high.xz));
   vec4 nearY = near.y * (vec4(low.zw, high.zw) - beforeY);
@@ -184,5 +184,5 @@ vec3 ViewNormal(vec3 gradient, vec3 toViewer)
   {
     return toViewer;
   }
-  return normalize(mat3(scene.NormalMatrix) * (gradient / largest));
+  return normalize(look.NormalMatrix * (gradient / largest));
 }

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+// What the pipeline draws of a volume, from where and how.
+#ifndef PipelineScene_h
+#define PipelineScene_h
+
+#include "Shaders/Shared/SceneBlocks.glsl.h"
+
+struct PipelineScene
+{
+  glsl::View View = {}; ///< all bytes zero: views are compared byte by byte
+  glsl::Look Look = {};
+  bool Translucent = false; ///< an isosurface is
+  bool Obstructed = false;  ///< opaque geometry may hide translucent isosurfaces
+};
+
+#endif

@@ -1,0 +1,183 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+// The uniform blocks, read by GLSL and by C++ (namespace glsl), one for each owner. Padding is
+// spelt out: std140 aligns a vector of three like one of four, but lets a scalar follow it closely.
+#ifndef SceneBlocks_glsl_h
+#define SceneBlocks_glsl_h
+
+#define VIEW_BINDING 0
+#define LOOK_BINDING 1
+#define VOLUME_BINDING 2
+#define CACHE_BINDING 3
+#define PALETTE_BINDING 4
+
+#ifdef __cplusplus
+#include <cstdint>
+
+#define UNIFORM_BLOCK(name, number) struct name
+#define INSTANCE(name)
+
+namespace glsl
+{
+using uint = std::uint32_t;
+using vec3 = float[3];
+using vec4 = float[4];
+using mat3 = float[3][4]; // columns
+using dvec3 = double[3];
+using ivec2 = std::int32_t[2];
+using ivec3 = std::int32_t[3];
+#else
+#define UNIFORM_BLOCK(name, number) layout(std140, binding = number) uniform name
+#define INSTANCE(name) name
+#endif
+
+const int MAX_LIGHTS = 16;
+const int MAX_ISOVALUES = 16;
+const int MAX_CLIPPING_PLANES = 16;
+const int ALL_REGIONS = (1 << 27) - 1;
+const uint PIXELS_PER_BLOCK_AHEAD = 4u; // that a ray must have for each block it looks ahead
+
+// Values of LitSides: a light reaches a surface from where the values are lower, from either side,
+// or only the side that is seen, as VTK's meshes are lit.
+const int ONE_SIDED = 0;
+const int TWO_SIDED = 1;
+const int LIT_LIKE_MESHES = 2;
+
+// A vector that is Base + x PerX + y PerY at the pixel's centre (x, y).
+struct PixelVector
+{
+  dvec3 Base;
+  double Padding0;
+  dvec3 PerX;
+  double Padding1;
+  dvec3 PerY;
+  double Padding2;
+};
+
+// In index space; the surface is drawn at p where dot(Normal, p) + Offset >= 0.
+struct ClippingPlane
+{
+  dvec3 Normal;
+  double Offset;
+};
+
+// The sum of two floats, in the units of the stream.
+struct Isovalue
+{
+  float High;
+  float Low;
+  float Padding0;
+  float Padding1;
+};
+
+// What decides which hits rays have: any change restarts the image. From the mapper.
+UNIFORM_BLOCK(View, VIEW_BINDING)
+{
+  PixelVector RayOrigin; // index space; a ray's parameter t is the depth along the view direction
+  PixelVector RayDirection;
+  PixelVector EyeOrigin; // the same in view coordinates
+  PixelVector EyeDirection;
+  double NearDistance; // clipping range of the camera
+  double FarDistance;
+  double Padding0;
+  double Padding1;
+  ClippingPlane ClippingPlanes[MAX_CLIPPING_PLANES];
+  dvec3 CroppingLow; // index space: the planes that part the volume into 3^3 regions
+  double Padding2;
+  dvec3 CroppingHigh;
+  double Padding3;
+  ivec3 FirstDrawn; // samples between which the surface is drawn; beyond, they only give normals
+  int NumberOfIsovalues;
+  ivec3 LastDrawn;
+  int NumberOfClippingPlanes;
+  ivec2 ImageSize;
+  ivec2 ImageOrigin; // in the window
+  int DrawnRegions;  // a bit for each cropping region
+  int Padding4;
+  int Padding5;
+  int Padding6;
+  Isovalue Isovalues[MAX_ISOVALUES];
+}
+INSTANCE(view);
+
+struct IsosurfaceColor
+{
+  vec3 Rgb;
+  float Opacity;
+};
+
+// Colours are multiplied by the light's intensity, places are in view coordinates.
+struct Light
+{
+  vec3 Position; // or the direction towards the light
+  int IsPositional;
+  vec3 Diffuse;
+  float ConeExponent;
+  vec3 ConeAxis;
+  float ConeCosine; // of the angle between axis and border
+  float ConstantAttenuation;
+  float LinearAttenuation; // per unit of distance
+  float QuadraticAttenuation;
+  int IsSpot; // else the members of the cone do not count
+  vec3 Specular;
+  float Padding0;
+};
+
+// What decides how hits look: a change needs no new rays. From the mapper.
+UNIFORM_BLOCK(Look, LOOK_BINDING)
+{
+  mat3 NormalMatrix; // from gradients in index space to normals in view space
+  float ClipZ;       // clip coordinates z and w at t = 0, and what they gain with t
+  float ClipZPerT;
+  float ClipW;
+  float ClipWPerT;
+  float Ambient;
+  float Diffuse;
+  float Specular;
+  float SpecularPower;
+  int NumberOfLights; // 0: unlit
+  int LitSides;
+  int Padding0;
+  int Padding1;
+  IsosurfaceColor Colors[MAX_ISOVALUES];
+  Light Lights[MAX_LIGHTS];
+}
+INSTANCE(look);
+
+// From the pipeline, once a volume.
+UNIFORM_BLOCK(Volume, VOLUME_BINDING)
+{
+  ivec3 Samples;
+  int BlockBits;
+  ivec3 Blocks;
+  uint NumberOfBlocks;
+  ivec3 Macrocells;
+  uint NumberOfMacrocells;
+  int ColorBlockBits; // of the stream that gives the colours
+  int Padding0;
+  int Padding1;
+  int Padding2;
+}
+INSTANCE(volume);
+
+// From the pipeline: the cache's size, and how it is to be used.
+UNIFORM_BLOCK(Cache, CACHE_BINDING)
+{
+  uint Slots;
+  uint MapPages;
+  uint CannotGrow;
+  uint SpeculationLimit;   // blocks that a ray may ask for in a pass
+  uint PixelsPerStraggler; // so few rays, or fewer, get a work group each; 0: never
+  uint Padding0;
+  uint Padding1;
+  uint Padding2;
+}
+INSTANCE(cache);
+
+#ifdef __cplusplus
+}
+#undef UNIFORM_BLOCK
+#undef INSTANCE
+#endif
+
+#endif
