@@ -1,15 +1,9 @@
-"""What every test shares: where modules are found, markers, and fixtures."""
+"""What every test shares: a window system, hypothesis's profiles, and fixtures."""
 
 import os
-import pathlib
-import sys
 
 import pytest
 from hypothesis import HealthCheck, settings
-
-HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent))
-sys.path.insert(0, str(HERE))
 
 # Tests render without a display unless they start one themselves; a caller may ask for another window, as one on a GPU does.
 if not os.environ.get("DISPLAY"):
@@ -33,20 +27,14 @@ settings.register_profile(
 settings.load_profile("progiso")
 
 
-def pytest_configure(config):
-    config.addinivalue_line(
-        "markers", "paraview: runs ParaView with the plugin; wants PROGISO_PARAVIEW_BUILD"
-    )
-
-
 def pytest_addoption(parser):
     parser.addoption(
         "--write-baselines", action="store_true", help="store what is rendered as the new baselines"
     )
 
 
-@pytest.fixture
-def lacking(request):
+@pytest.fixture(scope="session")
+def lacking():
     """Skip a test for want of something, or fail it in continuous integration, where nothing may be wanting."""
 
     def missing(reason):

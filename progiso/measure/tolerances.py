@@ -93,7 +93,7 @@ PROCESSES_AREA = 1e-6
 LIE_LEVELS = 2
 
 #: Our picture against that of VTK's mapper, of the same samples: part of the pixels that may differ by more than `VTK_LEVELS` grey
-#: levels in some channel. Its hits are late by up to a twentieth of a voxel (stages.STEP), and it misses what is thinner: silhouettes and
+#: levels in some channel. Its hits are late by up to a twentieth of a voxel (helpers.comparison.STEP), and it misses what is thinner: silhouettes and
 #: the edges of cuts move by a pixel, those of every one of several translucent surfaces. Triangles move them as much.
 VTK_PIXELS = 0.02
 VTK_LEVELS = 10

@@ -1,0 +1,54 @@
+"""Images to test with, and what the references say of them."""
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+import progiso
+from progiso.geometry import samples_of
+from progiso.oracle import zfp_reference
+from progiso.oracle.caster import Volume
+from progiso.verify.fields import blobs, make_image, marschner_lobb, noise
+
+__all__ = ["blobs", "make_image", "marschner_lobb", "noise", "samples_of"]  # for all tests
+
+#: Of the names of a compressed volume's metadata arrays.
+PREFIX = "ProgIso.ZFP."
+
+#: Those arrays, but for the stream.
+METADATA = ("Version", "BlockBits", "Dimensions", "Range", "ScalarType", "Component", "Association")
+
+
+def metadata(compressed, name):
+    """Return one of a compressed volume's metadata arrays as numbers."""
+    return vtk_to_numpy(compressed.GetFieldData().GetAbstractArray(PREFIX + name))
+
+
+def stream_of(compressed):
+    """Return a compressed volume's stream as bytes."""
+    return metadata(compressed, "Stream").tobytes()
+
+
+def reference_values(compressed):
+    """Decode a compressed volume by libzfp."""
+    bits = int(metadata(compressed, "BlockBits")[0])
+    return zfp_reference.decode(stream_of(compressed), metadata(compressed, "Dimensions"), bits)
+
+
+def reference_volume(compressed, user_matrix=None):
+    """Give the caster what a compressed volume holds, decoded by libzfp, and where it is."""
+    shift = 0.5 if metadata(compressed, "Association")[0] == 1 else 0.0
+    user = np.eye(4) if user_matrix is None else user_matrix
+    return Volume.from_image(reference_values(compressed), compressed, user, shift)
+
+
+def same_bits(a, b):
+    """Tell whether two float32 arrays agree in every bit, signs of zero included."""
+    return a.shape == b.shape and np.array_equal(a.view(np.uint32), b.view(np.uint32))
+
+
+def check_same(volume, expected):
+    """Stream and metadata agree."""
+    assert stream_of(volume) == stream_of(expected)
+    for name in METADATA:
+        assert metadata(volume, name).tolist() == metadata(expected, name).tolist(), name
+    assert progiso.describe(volume)["array"] == progiso.describe(expected)["array"]

@@ -1,0 +1,476 @@
+"""The benchmarks: that every set runs and reports, and that they judge rightly. Speed is no test's business."""
+
+import copy
+import json
+import os
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+import progiso
+from helpers.images import blobs, make_image, noise
+from helpers.programs import call
+from progiso.bench import goals
+from progiso.bench.explicit import BlockRanges
+from progiso.bench.fields import parse_field
+from progiso.bench.literature import GPU
+from progiso.bench.report import markdown
+from progiso.bench.settings import PEERS, Settings
+from progiso.bench.soak import growth
+from progiso.bench.volume_mapper import VolumeMapper
+from progiso.data import fetch
+from progiso.measure import tolerances
+from progiso.measure.agreement import depth_error
+from progiso.measure.document import load_document, merge
+from progiso.measure.mesh import Mesh, extract
+from progiso.measure.topology import topology
+from progiso.measure.view import opposite, turned
+from progiso.oracle.caster import Camera, Volume, cast
+
+TINY = ("--fields", "gyroid-24-k2-r8", "--size", "64x48", "--positions", 2)
+KINDS = {
+    "quick": {"peers", "protocol", "latency", "errors", "image_scaling", "volume_scaling"},
+    "paper": {"protocol", "latency"},
+    "scaling": {"image_scaling", "volume_scaling"},
+    "peers": {"peers"},
+    "errors": {"errors"},
+    "rates": {"rates"},
+    "budget": {"budget"},
+    "soak": {"soak"},
+}
+OPTIONS = {
+    "quick": ("--isovalues", 2),
+    "paper": ("--isovalues", 2),
+    "scaling": ("--largest", 64, "--images", "64x48,96x72"),
+    "soak": ("--frames", 40),
+}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Where the sets leave their results, each in a folder of its own."""
+    return tmp_path_factory.mktemp("bench")
+
+
+@pytest.fixture(scope="module")
+def results(folder):
+    """Run a set once; return its folder."""
+
+    def run(name):
+        if not (folder / name).exists():
+            call(folder, "bench", name, *TINY, *OPTIONS.get(name, ()), "--output", name)
+        return folder / name
+
+    return run
+
+
+# --- the command ---------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_sets(results, name):
+    """Each set leaves JSON with its measurements, Markdown with its tables, and the plots that it shows."""
+    document = json.loads((results(name) / "results.json").read_text())
+    assert set(document["measurements"]) == KINDS[name]
+    assert document["runs"][0]["set"] == name and document["runs"][0]["complete"]
+    assert {"cpu", "cores", "memory_bytes", "gl", "vtk"} <= set(document["machine"])
+    text = (results(name) / "results.md").read_text()
+    shown = re.findall(r"!\[\]\((.*)\)", text)
+    assert shown or name == "latency"
+    assert sorted(shown) == sorted(p.name for p in results(name).glob("*.png"))
+    for plot in shown:
+        assert (results(name) / plot).read_bytes()[:4] == b"\x89PNG"
+    assert "nan" not in text and "None" not in text
+
+
+def test_quick_names_the_peers(results):
+    text = (results("quick") / "results.md").read_text()
+    for peer in ("ProgIso", "VTK isosurface mapper", "VTK FlyingEdges"):
+        assert re.search(rf"^\|.*\| {peer} \|", text, re.MULTILINE)
+
+
+def test_protocol_counts(results):
+    """What the paper's tables say can be checked against each other."""
+    record = load_document(results("paper") / "results.json")["measurements"]["protocol"][0]
+    assert record["time"]["count"] == len(record["isovalues"]) * record["positions"] == 4
+    assert record["memory"]["blocks"] == 6**3 and record["memory"]["pixels"] == 64 * 48
+    rows = record["by_pass"]["with"]
+    assert len(rows) <= len(record["by_pass"]["without"])
+    done = [row["completed"] for row in rows]
+    assert done == sorted(done) and done[-1] == 1
+    assert 0 < record["table2"]["visible_percent"] <= 100
+    explicit = record["explicit"]
+    assert all(m["triangles"] > 0 and m["bytes"] > 0 for m in explicit["meshes"])
+    for ours, theirs in zip(
+        np.repeat(explicit["active_percent"], 2), record["active"]["max_percent"]
+    ):
+        assert theirs <= ours + 1e-9 or ours == 100
+
+
+def test_moved_bytes(results):
+    """The floor of an image's time: no less than its pixels, its blocks decoded and intersected, once."""
+    record = load_document(results("paper") / "results.json")["measurements"]["protocol"][0]
+    pixels = 64 * 48 * 32
+    assert (
+        pixels
+        < record["moved_bytes"]
+        < pixels + 6**3 * (256 + 64 + 256) * len(record["by_pass"]["with"])
+    )
+
+
+@pytest.mark.parametrize("name, kind", [("peers", "peers"), ("paper", "protocol")])
+def test_largest_mesh(results, folder, name, kind):
+    """No meshes of volumes larger than that; everything else as ever."""
+    out = f"{name}-no-mesh"
+    call(
+        folder,
+        "bench",
+        name,
+        *TINY,
+        *OPTIONS.get(name, ()),
+        "--largest-mesh",
+        16,
+        "--no-plots",
+        "--output",
+        out,
+    )
+    measured = [
+        load_document(folder / of / "results.json")["measurements"][kind][0] for of in (name, out)
+    ]
+    text = json.dumps(measured[1])
+    assert "no meshes of volumes larger than 16" in text and "triangles" not in text
+    assert "triangles" in json.dumps(measured[0]) and measured[0].keys() == measured[1].keys()
+
+
+def test_random_isovalues_are_seeded():
+    field = parse_field("ct-cranium")
+    low, high = min(field.isovalues), max(field.isovalues)
+    values = field.random_isovalues(50, 3)
+    assert values == field.random_isovalues(50, 3) != field.random_isovalues(50, 4)
+    assert all(low <= v <= high for v in values)
+    assert Settings((8, 8), PEERS, 2).isovalues_of(field) == list(field.isovalues)
+
+
+def test_report_makes_the_same_of_json(results, folder):
+    call(folder, "bench", "report", "quick/results.json", "--output", "again")
+    for path in results("quick").glob("*.md"):
+        assert (folder / "again" / path.name).read_bytes() == path.read_bytes()
+    assert {p.name for p in (folder / "again").glob("*.png")} == {
+        p.name for p in results("quick").glob("*.png")
+    }
+
+
+def test_report_as_a_page(results, folder):
+    """A Markdown file of any name, with its plots in a folder of that name."""
+    call(
+        folder, "bench", "report", results("quick") / "results.json", "--output", "pages/machine.md"
+    )
+    text = (folder / "pages" / "machine.md").read_text()
+    shown = re.findall(r"!\[\]\((.*)\)", text)
+    assert shown and all(name.startswith("machine/") for name in shown)
+    assert sorted(shown) == sorted(
+        f"machine/{p.name}" for p in (folder / "pages" / "machine").iterdir()
+    )
+    assert text == (results("quick") / "results.md").read_text().replace("![](", "![](machine/")
+
+
+def test_reports_are_put_together(results, folder):
+    paths = [results(name) / "results.json" for name in ("peers", "budget", "peers")]
+    call(folder, "bench", "report", *paths, "--output", "both")
+    text = (folder / "both" / "results.md").read_text()
+    assert "## Side by side" in text and "## Memory budgets" in text
+    merged = merge([load_document(path) for path in paths])
+    assert len(merged["measurements"]["peers"]) == 1 and len(merged["runs"]) == 3
+
+
+def test_measuring_needs_no_matplotlib(folder):
+    """A bare machine has none: the plots are left to another one."""
+    (folder / "bare").mkdir()
+    (folder / "bare" / "matplotlib.py").write_text("raise ImportError('not here')")
+    path = os.pathsep.join(filter(None, (str(folder / "bare"), os.environ.get("PYTHONPATH"))))
+    environment = dict(os.environ, PYTHONPATH=path)
+    command = [
+        sys.executable,
+        "-m",
+        "progiso",
+        "bench",
+        "peers",
+        *map(str, TINY),
+        "--no-plots",
+        "--output",
+        "bare",
+    ]
+    subprocess.run(command, cwd=folder, env=environment, check=True, capture_output=True)
+    assert (folder / "bare" / "results.md").is_file() and not list((folder / "bare").glob("*.png"))
+
+
+def test_soak_judges_what_is_left_behind(results):
+    """Memory that grows by more than the goal, steps and noise aside, and errors of OpenGL's."""
+    document = load_document(results("soak") / "results.json")
+    (record,) = document["measurements"]["soak"]
+    assert (
+        record["samples"]["frame"] == list(range(41))
+        and record["warm_up"] == 10
+        and record["gl_errors"] == 0
+    )
+    assert sum(record["changes"].values()) > 0 and min(record["samples"]["rss"]) > 2**24
+    assert all(
+        peak >= rest > 2**16
+        for peak, rest in zip(record["samples"]["peak"], record["samples"]["mapper"])
+    )
+    frames, noise = np.arange(0, 10001, 50), np.random.default_rng(1).normal(0, 2**18, 201)
+    for slope, met in ((0.9, True), (1.1, False)):
+        rss = 1e9 + slope * 2**20 * frames / 1000 + noise + 2**23 * (frames > 1000)
+        record["growth"]["rss"] = growth({"frame": frames, "rss": rss}, "rss", 2000)
+        assert record["growth"]["rss"] == pytest.approx(slope * 2**20 / 1000, rel=0.05)
+        row = next(
+            line
+            for line in markdown(document, {}).splitlines()
+            if line.startswith("| main memory of the process")
+        )
+        assert ("in 1000 frames: met |" in row) == met != ("**not met**" in row)
+    record["gl_errors"] = 1
+    assert "none: **not met**" in markdown(document, {})
+
+
+FAILURES = {
+    "set": (["fastest"], "fastest"),
+    "field": (["peers", "--fields", "teapot-64"], "teapot-64"),
+    "size of a scan": (["peers", "--fields", "ct-cranium-64"], "ct-cranium-64"),
+    "k": (["peers", "--fields", "sphere-16-k3"], "sphere-16-k3"),
+    "rate": (["peers", "--fields", "gyroid-16-r40"], "gyroid-16-r40"),
+    "isovalues": (["paper", "--isovalues", "some"], "some"),
+    "positions": (["paper", "--positions", "1"], "at least 2"),
+    "image size": (["paper", "--size", "0x5"], "0x5"),
+    "image too large": (["paper", "--size", "20000x5"], "16384"),
+    "images": (["scaling", "--images", "64x48,wide"], "wide"),
+    "largest": (["scaling", "--largest", "3"], "64"),
+    "output": (["peers", "--output", "a-file"], "a-file"),
+    "no results": (["report", "none.json"], "none.json"),
+    "not JSON": (["report", "a-file"], "a-file"),
+    "other JSON": (["report", "other.json"], "schema"),
+    "damaged JSON": (["report", "damaged.json"], "machine"),
+}
+
+
+@pytest.mark.parametrize("case", FAILURES)
+def test_errors_are_one_line(folder, case):
+    arguments, word = FAILURES[case]
+    (folder / "a-file").write_text("?")
+    (folder / "other.json").write_text('{"schema": 0}')
+    (folder / "damaged.json").write_text('{"schema": 1}')
+    lines = call(folder, "bench", *arguments, succeeds=False).strip().splitlines()
+    assert len(lines) == 1, lines
+    assert "error" in lines[0] and word in lines[0]
+
+
+def test_machines_are_not_mixed(results):
+    one = load_document(results("peers") / "results.json")
+    other = copy.deepcopy(one)
+    other["machine"]["cpu"] = "another"
+    with pytest.raises(ValueError, match="cpu"):
+        merge([one, other])
+
+
+# --- judging --------------------------------------------------------------------------------------------------------------------
+
+
+def test_depth_error_of_a_shifted_image():
+    values = blobs((24, 22, 26), 1)
+    volume = Volume.from_geometry(values, spacing=(0.5, 1, 2))
+    result = cast(volume, 0.0, Camera((40, 30, 70), (6, 10, 20), view_angle=45), (80, 60))
+    hit = np.isfinite(result.depth)
+    assert 500 < hit.sum() < hit.size
+    assert set(depth_error(result.depth, result.depth, result.voxels).values()) == {0}
+    shifted = depth_error(result.depth - 0.25 / result.voxels, result.depth, result.voxels)
+    assert (
+        shifted["mean"] == pytest.approx(0.25)
+        and shifted["p99"] == pytest.approx(0.25)
+        and shifted["wrong"] == 0
+    )
+    partial = result.depth.copy()
+    partial[:30] = np.inf
+    assert depth_error(partial, result.depth, result.voxels)["wrong"] == hit[:30].sum() / hit.size
+    everywhere = np.where(hit, result.depth, 1.0)
+    assert depth_error(everywhere, result.depth, result.voxels)["wrong"] == np.mean(~hit)
+    assert depth_error(np.full_like(partial, np.inf), result.depth, result.voxels)["mean"] is None
+
+
+@pytest.mark.parametrize("border", [False, True])
+def test_topology(border):
+    """Two tori and a ball; also where the volume's border cuts the ball."""
+    z, y, x = np.indices((40, 50, 90), dtype=float)
+
+    def torus(at):
+        return 5 - np.hypot(np.hypot(x - at, y - 25.2) - 13, z - 19.7)
+
+    ball = 7 - np.sqrt((x - 20.1) ** 2 + (y - 25.3) ** 2 + (z - (1.5 if border else 20.2)) ** 2)
+    values = np.maximum(np.maximum(torus(20.3), torus(65.6)), ball).astype(np.float32)
+    found = topology(make_image(values), 0.0)
+    assert (found["components"], found["genus"], found["euler"]) == (3, 2, 2)
+    assert topology(make_image(values), 100.0) == {
+        "triangles": 0,
+        "components": 0,
+        "euler": 0,
+        "genus": 0,
+    }
+
+
+def test_rates_tell_what_they_cost(results):
+    """Errors fall with the rate; the finest has the surface as it is."""
+    record = load_document(results("rates") / "results.json")["measurements"]["rates"][0]
+    points = record["points"]
+    assert [point["rate"] for point in points] == sorted(point["rate"] for point in points)
+    for key in ("max_error", "rms_error", "p99"):
+        assert points[0][key] > 5 * points[4][key] > 500 * points[-1][key]
+    assert points[-1]["wrong"] == 0 and points[-1]["triangles"] == record["topology"]["triangles"]
+    values = progiso.read(fetch("gyroid", size=24, k=2)).GetPointData().GetScalars()
+    decoded = progiso.decompress(
+        progiso.compress(progiso.read(fetch("gyroid", size=24, k=2)), points[2]["rate"])
+    )
+    off = vtk_to_numpy(decoded.GetPointData().GetScalars()).astype(float) - vtk_to_numpy(values)
+    assert points[2]["max_error"] == np.abs(off).max()
+    assert points[2]["rms_error"] == pytest.approx(np.sqrt(np.mean(off**2)))
+
+
+@pytest.fixture(scope="module")
+def ramp():
+    """A plane in a volume of flat voxels, and the caster's image of it."""
+    z, y, x = np.indices((20, 24, 28)).astype(np.float32)
+    values = 0.7 * x - 0.4 * y + 0.5 * z
+    image = make_image(values, spacing=(1, 1, 2), origin=(5, -3, 2))
+    camera = progiso.orbit_camera(image, 1, 5)
+    volume = Volume.from_geometry(values, image.GetOrigin(), image.GetSpacing())
+    seen = Camera(camera.position, camera.focal_point, camera.view_up, camera.view_angle)
+    return image, camera, cast(volume, 9.0, seen, (150, 100))
+
+
+def off(view, camera, expected):
+    """Signed depth errors in voxels, where both hit; almost all rays agree on that."""
+    view.render_from(camera)
+    depth = view.depth()
+    view.close()
+    both = np.isfinite(depth) & np.isfinite(expected.depth)
+    assert (
+        both.sum() > 500
+        and np.mean(np.isfinite(depth) != np.isfinite(expected.depth)) < tolerances.IMAGE_PIXELS
+    )
+    return (depth[both] - expected.depth[both]) * expected.voxels[both]
+
+
+def test_depth_of_a_mesh(ramp):
+    image, camera, expected = ramp
+    mesh, _ = extract(image, 9.0)
+    error = off(Mesh(mesh, (150, 100)), camera, expected)
+    assert np.abs(error).max() < tolerances.MESH_DEPTH_VOXELS
+
+
+@pytest.mark.parametrize("distance", [0.1, 0.5])
+def test_depth_of_vtks_mapper(ramp, distance):
+    """It shades at the first sample beyond the surface: up to one sample distance too deep, half of it in the mean."""
+    image, camera, expected = ramp
+    error = off(VolumeMapper(image, 9.0, (150, 100), distance), camera, expected)
+    assert error.min() > -tolerances.TEXTURE_VOXELS
+    assert error.max() < distance + tolerances.TEXTURE_VOXELS
+    assert 0.25 * distance < error.mean() < 0.75 * distance
+
+
+@pytest.mark.parametrize("shape", [(9, 13, 10), (8, 4, 5), (12, 11, 6)])
+def test_blocks_of_explicit_extraction(shape):
+    """Counted cell by cell: a block is held where a cell of it is, active with the blocks of its cells' corners."""
+    values = noise(shape, 4)
+    held, active = set(), set()
+    for cell in np.ndindex(*(n - 1 for n in shape)):
+        corners = values[tuple(slice(c, c + 2) for c in cell)]
+        if corners.min() < 1.5 <= corners.max():
+            held.add(tuple(c // 4 for c in cell))
+    blocks = [-(-n // 4) for n in shape]
+    for block in held:
+        for offset in np.ndindex(2, 2, 2):
+            neighbour = tuple(b + o for b, o in zip(block, offset))
+            if all(n < b for n, b in zip(neighbour, blocks)):
+                active.add(neighbour)
+    counted = BlockRanges(values).count(1.5)
+    # a block's range may hold the isovalue where none of its cells does
+    assert len(held) <= counted["held"] and len(active) <= counted["active"] <= counted[
+        "blocks"
+    ] == np.prod(blocks)
+    ranges = {
+        block: values[tuple(slice(4 * b, 4 * b + 5) for b in block)]
+        for block in np.ndindex(*(-(-(n - 1) // 4) for n in shape))
+    }
+    assert counted["held"] == sum(r.min() < 1.5 <= r.max() for r in ranges.values())
+
+
+def test_cameras_move_as_said():
+    camera = progiso.orbit_camera((0, 4, 0, 2, 0, 3), 4, 5)
+    away = np.subtract(camera.position, camera.focal_point)
+    moved = np.subtract(turned(camera, 2.0).position, camera.focal_point)
+    behind = np.subtract(opposite(camera).position, camera.focal_point)
+    assert np.linalg.norm(moved) == pytest.approx(np.linalg.norm(away))
+    assert moved @ away / (away @ away) == pytest.approx(np.cos(np.radians(2)))
+    assert behind == pytest.approx(-away)
+
+
+def test_goals_are_computed(results):
+    """A figure on the other side of its goal turns the verdict, in the tables and in the summary."""
+    document = load_document(results("paper") / "results.json")
+    for records in document["measurements"].values():
+        records[0]["others_cores"] = 0.0
+    record = document["measurements"]["latency"][0]
+    record["cold"]["mean"] = 100.0
+    for milliseconds, verdict, met in (
+        (49.0, "(50 ms): met", 1),
+        (51.0, "(50 ms): **not met**", 0),
+    ):
+        record["moved"]["mean"] = milliseconds
+        text = markdown(document, {})
+        assert verdict in text
+        assert f"## Goals: {1 + met} of 2 met" in text
+
+
+def test_busy_machines_are_told(results):
+    """Where other processes took the processor no time is judged, met or not; memory is all the same."""
+    document = load_document(results("paper") / "results.json")
+    records = [record for records in document["measurements"].values() for record in records]
+    assert all(record["others_cores"] is None or record["others_cores"] >= 0 for record in records)
+    document["machine"]["cores"] = 2
+    for record in records:
+        record["others_cores"] = 0.02
+    assert "busy" not in markdown(document, {})
+    for record in records:
+        record["others_cores"] = 1.3
+    record = document["measurements"]["latency"][0]
+    for record["moved"]["mean"] in (0.1, 1e6):
+        text = markdown(document, {})
+        assert (
+            "**The machine was busy**: other processes took up to 1.3 of its 2 cores during 2 of 2"
+            in text
+        )
+        assert "## Goals: 1 of 1 met, 1 not judged" in text
+        assert "not met" not in text
+
+
+def test_goals_by_machine():
+    gpu, software = {"gl": GPU, "cores": 16}, {"gl": "llvmpipe (LLVM 15)", "cores": 2}
+    assert goals.complete_image(gpu, (1280, 720), 1024**3, 9.9).met
+    assert not goals.complete_image(gpu, (1280, 720), 1024**3, 10.1).met
+    assert goals.complete_image(gpu, (1280, 720), 2048 * 2048 * 1920, 19.0).met
+    assert goals.complete_image(gpu, (640, 360), 1024**3, 9.9) is None
+    assert goals.complete_image(software, (1280, 720), 1024**3, 9.9) is None
+    published, strong = goals.against_paper(gpu, "gyroid-256-k6-r2", (1280, 720), 8.0)
+    assert published.met and not strong.met
+    assert [
+        v.met for v in goals.against_paper(software, "gyroid-256-k6-r2", (640, 360), 500.0)
+    ] == [True, True]
+    assert goals.against_mapper(software, (1280, 720), "ct-cranium-r8", 7_000_000, 500.0, 600.0).met
+    assert (
+        goals.against_mapper(
+            software, (1280, 720), "marschner-lobb-128-k6-r4", 2_000_000, 500.0, 600.0
+        )
+        is None
+    )

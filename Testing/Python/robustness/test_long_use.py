@@ -1,0 +1,188 @@
+"""Many mappers, many volumes, many windows: what they leave behind, what they share, and that none disturbs another."""
+
+import gc
+import sys
+import threading
+
+import numpy as np
+import pytest
+from vtkmodules.vtkRenderingCore import vtkRenderWindow
+
+import progiso
+from helpers.comparison import BLUE, GREEN, NESTED, OPAQUE, RED, Stage, show
+from helpers.gl_objects import objects
+from helpers.images import blobs, make_image
+from helpers.programs import under_x
+from helpers.scenes import CACHED
+from progiso.bench.soak import growth
+from progiso.measure import tolerances
+from progiso.measure.machine import resident_bytes
+
+MAPPERS, VOLUMES, FRAMES = 200, 50, 12
+
+
+@pytest.fixture(scope="module")
+def image():
+    return progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), 8)
+
+
+def test_mappers_come_and_go(image):
+    """Two hundred of them, of all kinds: as many objects of OpenGL's as before, and no more memory."""
+    stage = Stage(True, (64, 48))
+    stage.look_at(image)
+    stage.render()
+    before = objects(stage.window)
+    keeper = stage.add(image, OPAQUE)
+    stage.render()
+    stage.volumes.clear()
+    keeper.VisibilityOff()
+    kinds = [
+        (OPAQUE, {}),
+        (NESTED, CACHED),
+        (OPAQUE, {**CACHED, "DetailedStatistics": True}),
+        (NESTED, {}),
+    ]
+    samples = {"frame": [], "rss": []}
+    for number in range(MAPPERS):
+        surfaces, settings = kinds[number % len(kinds)]
+        volume = stage.add(image, surfaces, **settings)
+        stage.render()
+        if number % 3:
+            volume.ReleaseGraphicsResources(stage.window)
+        stage.renderer.RemoveVolume(volume)
+        stage.volumes.clear()
+        del volume
+        if number % len(kinds) == len(kinds) - 1:
+            samples["frame"].append(number)
+            samples["rss"].append(resident_bytes())
+            if number < MAPPERS / 4:
+                counted = objects(
+                    stage.window
+                )  # by then all shaders are compiled, which the keeper holds
+    assert objects(stage.window) == counted
+    assert growth(samples, "rss", MAPPERS // 4) <= tolerances.GROWTH_BYTES
+    stage.renderer.RemoveVolume(keeper)
+    del keeper
+    gc.collect()
+    after = objects(stage.window)
+    assert after["Program"] < counted["Program"] <= before["Program"] + 60
+    for kind in ("Buffer", "Texture", "Query", "Framebuffer", "Renderbuffer", "VertexArray"):
+        assert after[kind] == before[kind], kind
+
+
+def test_fifty_volumes(image):
+    """In one scene, in rows: each shows as it does alone, and they share their shaders."""
+    size, small = (300, 160), progiso.compress(make_image(blobs((12, 14, 10), 5, waves=1)), 16)
+    stage, alone = Stage(True, size), Stage(True, size)
+    places = [np.array((12 * (i % 10), 16 * (i // 10), 0)) for i in range(VOLUMES)]
+    matrices = [np.block([[np.eye(3), place[:, None]], [np.zeros(3), 1]]) for place in places]
+    colors = [(0.1 * (i % 10), 0.2 * (i // 10), 1 - 0.1 * (i % 10)) for i in range(VOLUMES)]
+    for scene in (stage, alone):
+        scene.clipping_range = 20, 400
+        scene.camera.SetParallelProjection(True)
+        scene.camera.SetParallelScale(48)
+        scene.camera.SetPosition(60, 38, 150)
+        scene.camera.SetFocalPoint(60, 38, 0)
+    counts = []
+    for matrix, color in zip(matrices, colors):
+        stage.add(small, {0.1: (*color, 1.0)}, matrix)
+        if len(stage.volumes) in (1, VOLUMES):
+            picture = stage.picture()
+            counts.append(objects(stage.window))
+    first, all_ = counts
+    assert all_["Program"] == first["Program"], "each has its own shaders"
+    assert all_["Buffer"] - first["Buffer"] <= (VOLUMES - 1) * first["Buffer"]
+    background = picture[0, 0]
+    together = np.broadcast_to(background, picture.shape).copy()
+    for matrix, color in zip(
+        matrices, colors
+    ):  # they do not overlap: what one shows the others leave alone
+        volume = alone.add(small, {0.1: (*color, 1.0)}, matrix)
+        one = alone.picture()
+        shown = (one != background).any(axis=2)
+        assert shown.sum() > 100 and (together[shown] == background).all()
+        together[shown] = one[shown]
+        alone.renderer.RemoveVolume(volume)
+        alone.volumes.clear()
+    assert np.array_equal(picture, together)
+
+
+SCENES = [
+    (OPAQUE, {}),
+    (NESTED, CACHED),
+    ({0.2: (*RED, 1.0)}, CACHED),
+    ({-0.2: (*BLUE, 0.5), 0.3: (*GREEN, 1.0)}, {}),
+]
+
+
+def frames(image, surfaces, settings):
+    """Pictures of a window of its own, as the camera goes round."""
+    stage = Stage(True, (96, 80))
+    show(stage, image, surfaces, **settings).GetProperty().ShadeOn()
+    pictures = []
+    for frame in range(FRAMES):
+        stage.look_at(image, frame % 4)
+        pictures.append(stage.picture())
+    stage.window.Finalize()
+    return pictures
+
+
+def test_each_thread_has_its_window(image):
+    """Four threads, each with a window that it makes, renders and closes: the pictures of one thread alone."""
+    expected = [frames(image, *scene) for scene in SCENES]
+    found = [None] * len(SCENES)
+
+    def work(number):
+        found[number] = frames(image, *SCENES[number])
+
+    threads = [threading.Thread(target=work, args=(number,)) for number in range(len(SCENES))]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for ours, theirs in zip(found, expected):
+        assert ours is not None and all(np.array_equal(a, b) for a, b in zip(ours, theirs))
+
+
+SHARED = """
+import sys
+sys.path[:0] = {path!r}
+import numpy as np
+import progiso
+from helpers.scenes import CACHED
+from helpers.comparison import Stage
+from helpers.images import blobs, make_image
+from helpers.comparison import NESTED, OPAQUE, show
+from helpers.gl_objects import objects
+
+image = progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), 8)
+stages = [Stage(True), Stage(True)]
+stages[1].window.SetSharedRenderWindow(stages[0].window)
+for stage, surfaces in zip(stages, (OPAQUE, NESTED)):
+    show(stage, image, surfaces, **CACHED).GetProperty().ShadeOn()
+pictures = [stage.picture() for stage in stages]
+names = [objects(stage.window)["Buffer"] for stage in stages]
+assert names[0] == names[1] > 20, "they share nothing"
+
+
+def check():
+    for stage, picture in zip(stages, pictures):
+        assert np.array_equal(stage.picture(), picture)
+
+
+check()
+for stage in stages:
+    stage.volumes[0].ReleaseGraphicsResources(stage.window)
+    check()
+    stage.window.Finalize()
+    check()
+print("good")
+"""
+
+
+def test_windows_share_their_contexts():
+    """As VTK's windows do under X: the names of one's buffers are known in the other, and nobody deletes the other's."""
+    if "OS" not in vtkRenderWindow().GetClassName():
+        pytest.skip("this wants a display of Mesa's")
+    program = SHARED.format(path=[path for path in sys.path if path])
+    assert "good" in under_x(sys.executable, "-c", program)

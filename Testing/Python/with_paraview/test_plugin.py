@@ -1,0 +1,72 @@
+"""The plugin, script by script: each of scripts/ checks what it shows and prints what it found as JSON."""
+
+import json
+import os
+import shutil
+import subprocess
+
+import pytest
+
+from helpers.programs import SCRIPTS, displays, under_x
+
+pytestmark = pytest.mark.paraview
+
+
+def run(name, build, folder):
+    """Run a script in pvpython and return what it found."""
+    output = under_x("pvpython", SCRIPTS / f"{name}.py", build, folder)
+    (found,) = [line for line in output.splitlines() if line.startswith("{")]
+    return json.loads(found)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "show_plain",
+        "show_compressed",
+        "opaque",
+        "zfp_files",
+        "interactive",
+        "errors",
+        "cell_data",
+        "panel",
+        "trace",
+        "contour",
+        "color_by",
+        "hidden",
+    ],
+)
+def test_script(name, build, tmp_path):
+    run(name, build, tmp_path)
+
+
+def test_state(build, tmp_path):
+    """A state saved by one process looks the same in another."""
+    assert run("state_save", build, tmp_path) == run("state_load", build, tmp_path)
+
+
+def test_window(build, tmp_path):
+    """ParaView's own window shows an isosurface, refined by its event loop."""
+    if not shutil.which("paraview"):
+        pytest.skip("there is no `paraview`, only its Python interpreters")
+    environment = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "VIRTUAL_ENV")}
+    command = ["bash", SCRIPTS / "gui.sh", build, tmp_path, f":{next(displays)}"]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stdout + done.stderr
+    seen = json.loads(done.stdout.splitlines()[-1])["seen"]
+    completed = [image["completed"] for image in seen]
+    assert completed[-1] == 1.0 and completed == sorted(completed) and completed[0] < 1.0
+    assert (tmp_path / "gui_window.png").stat().st_size > 50_000
+    # the panel's widget follows, image by image
+    for image in seen:
+        assert abs(image["bar"] - image["completed"]) < 2e-3 and (image["text"] == "100 %") == (
+            image["completed"] == 1.0
+        )
+        assert image["rows"] == image["passes"] > 0 and image["image"].startswith(
+            f"{image['passes']:.0f} pass"
+        )
+        assert (
+            image["memory"] == f"{image['held'] / 2**20:.1f} of {image['budget'] / 2**20:.1f} MiB"
+        )
+        assert 0 < image["held"] <= image["budget"] and all(time >= 0 for time in image["times"])
+    assert seen[-1]["rows"] > seen[0]["rows"] and sum(seen[-1]["times"]) > 0
