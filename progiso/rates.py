@@ -63,7 +63,7 @@ def least_rate(
     >>> import numpy as np, progiso
     >>> image = progiso.image_from_array(np.arange(512.0), (8, 8, 8))
     >>> rate = progiso.least_rate(image, 0.5)
-    >>> decoded = progiso.decompress(progiso.compress(image, rate)).GetPointData().GetScalars()
+    >>> decoded = progiso.decompress(progiso.compress(image, rate=rate)).GetPointData().GetScalars()
     >>> max(abs(decoded.GetValue(i) - i) for i in range(512)) <= 0.5
     True
     """

@@ -132,7 +132,7 @@ def render(
     volume = make_isosurface(
         image,
         isovalue,
-        [parse_color(each) for each in as_list(color, is_color)],
+        color=[parse_color(each) for each in as_list(color, is_color)],
         speculation=speculation,
         memory_budget=memory_budget,
         opacity=opacity,

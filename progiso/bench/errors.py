@@ -177,7 +177,7 @@ class _Measurement:
         return points
 
     def _rate(self, rate):
-        view = Isosurface(compress(self._image, rate), self._isovalue, self._settings.size)
+        view = Isosurface(compress(self._image, rate=rate), self._isovalue, self._settings.size)
         point = self._point(f"{rate:g} bits", self._time(view), view)
         view.close()
         return point

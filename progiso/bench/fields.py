@@ -220,7 +220,7 @@ def compressed(field):
         When there is no room on the disk.
     """
     if field.volume in SCANS:
-        return compress(plain(field), field.rate)
+        return compress(plain(field), rate=field.rate)
     _check_disk(int(field.voxels * field.rate / 8), "bits")
     return read(fetch_compressed(field.volume, field.dimensions, field.rate, **_options(field)))
 

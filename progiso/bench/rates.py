@@ -55,7 +55,7 @@ def _measure(field, settings, rates):
 
 
 def _point(image, isovalue, settings, expected, rate):
-    volume = compress(image, rate)
+    volume = compress(image, rate=rate)
     view = Isosurface(volume, isovalue, settings.size)
     view.render_from(settings.cameras(image)[0])
     depth = view.depth()

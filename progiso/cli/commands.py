@@ -330,7 +330,7 @@ def _read(parsed, name="file"):
 
 def _save(image, path, appended=False):
     with progress_bar(f"Writing {path.name}") as progress:
-        progiso.save(image, path, progress, appended)
+        progiso.save(image, path, progress=progress, appended=appended)
 
 
 def _remark(text):
@@ -357,12 +357,12 @@ def _compress(parsed):
     with progress_bar(f"Compressing {source.name}") as progress:
         volume = progiso.compress_file(
             source,
-            _given(parsed.rate, 8.0),
-            parsed.array,
-            parsed.component or 0,
-            parsed.threads,
-            progress,
-            parsed.mask_nan,
+            rate=_given(parsed.rate, 8.0),
+            array=parsed.array,
+            component=parsed.component or 0,
+            threads=parsed.threads,
+            progress=progress,
+            mask_nan=parsed.mask_nan,
         )
     _save(volume, parsed.out, parsed.appended)
     if parsed.out.suffix.lower() == ".zfp":
@@ -384,11 +384,11 @@ def _rate(parsed):
         rate = progiso.least_rate(
             image,
             parsed.tolerance,
-            parsed.relative,
-            parsed.array,
-            _given(parsed.component, 0),
-            progress,
-            parsed.mask_nan,
+            relative=parsed.relative,
+            array=parsed.array,
+            component=_given(parsed.component, 0),
+            progress=progress,
+            mask_nan=parsed.mask_nan,
         )
     print(f"{rate:.9g}")  # of 64ths all digits, for `compress --rate`
 
@@ -465,16 +465,16 @@ def _contour(parsed):
         surface = progiso.contour(
             image,
             parsed.isovalue,
-            parsed.rate,
-            parsed.array,
-            parsed.component or 0,
-            not parsed.no_normals,
+            rate=parsed.rate,
+            array=parsed.array,
+            component=parsed.component or 0,
+            normals=not parsed.no_normals,
             threads=parsed.threads,
             progress=progress,
             mask_nan=parsed.mask_nan,
         )
     with progress_bar(f"Writing {parsed.out.name}") as progress:
-        progiso.save_surface(surface, parsed.out, progress)
+        progiso.save_surface(surface, parsed.out, progress=progress)
     points, triangles = surface.GetNumberOfPoints(), surface.GetNumberOfPolys()
     if points == 0:
         _remark("the volume has no such values: `progiso info` tells their range")
@@ -496,30 +496,30 @@ def _render(parsed):
     if parsed.orbit is None:
         camera = progiso.view_camera(
             image,
-            parsed.view or (0.45, 1.0, 0.3),
-            parsed.up or (0.0, 0.0, 1.0),
-            parsed.parallel,
-            parsed.size[0] / max(1, parsed.size[1]),
-            _given(parsed.zoom, 1.0),
+            direction=parsed.view or (0.45, 1.0, 0.3),
+            view_up=parsed.up or (0.0, 0.0, 1.0),
+            parallel=parsed.parallel,
+            aspect=parsed.size[0] / max(1, parsed.size[1]),
+            zoom=_given(parsed.zoom, 1.0),
         )
     with progress_bar("Rendering") as progress:
         result = progiso.render(
             image,
             parsed.isovalue,
-            parsed.size,
-            parsed.orbit,
-            camera,
-            _given(parsed.rate, 8.0),
-            parsed.array,
-            parsed.component or 0,
-            not parsed.no_speculation,
-            parsed.color or "oldlace",
-            parsed.background,
-            progress,
-            parsed.memory_budget,
-            parsed.detailed,
-            parsed.opacity or 1.0,
-            parsed.mask_nan,
+            size=parsed.size,
+            orbit=parsed.orbit,
+            camera=camera,
+            rate=_given(parsed.rate, 8.0),
+            array=parsed.array,
+            component=parsed.component or 0,
+            speculation=not parsed.no_speculation,
+            color=parsed.color or "oldlace",
+            background=parsed.background,
+            progress=progress,
+            memory_budget=parsed.memory_budget,
+            detailed=parsed.detailed,
+            opacity=parsed.opacity or 1.0,
+            mask_nan=parsed.mask_nan,
         )
     _write_results(result, parsed)
     _print_summary(result)

@@ -136,7 +136,7 @@ def _read_invesalius(path):
         matrix = project["matrix"]
         samples = archive.extractfile(members[matrix["filename"]]).read()
     values = np.frombuffer(samples, np.dtype(matrix["dtype"]).newbyteorder("<"))
-    image = image_from_array(values, matrix["shape"][::-1], "HU")
+    image = image_from_array(values, matrix["shape"][::-1], name="HU")
     image.SetSpacing(project["spacing"])
     return image
 

@@ -138,7 +138,7 @@ def generate_compressed(generator, folder, size=128, rate=8.0, progress=None, **
     path = Path(folder) / f"{name}_{'x'.join(map(str, dimensions))}_rate{_digits(rate)}.zfp"
     if not path.is_file():
         check_output(path)
-        save(compress_slabs(slice_at, dimensions, rate, name, progress=progress), path)
+        save(compress_slabs(slice_at, dimensions, rate=rate, name=name, progress=progress), path)
     return path
 
 

@@ -160,6 +160,6 @@ def read_nibabel(path):
     if values.ndim != 3:
         raise ValueError(f"'{path}' is not a volume: its shape is {values.shape}")
     native = np.ascontiguousarray(values.T, values.dtype.newbyteorder("="))
-    image = image_from_array(native, values.shape, "scalars")
+    image = image_from_array(native, values.shape, name="scalars")
     set_axes(image, source.affine[:3, :3], source.affine[:3, 3])
     return image

@@ -64,7 +64,7 @@ def read_nrrd(path):
         raw = _payload(file, fields, path)
     values = _decode(raw, fields, dtype, int(np.prod(sizes, dtype=object)), path)
     components, dimensions, vectors = _axes(fields, sizes, path)
-    image = image_from_array(values, dimensions, path.stem, components)
+    image = image_from_array(values, dimensions, name=path.stem, components=components)
     _place(image, fields, vectors)
     return image
 

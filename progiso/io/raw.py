@@ -91,7 +91,7 @@ def read_raw(path):
     values = np.memmap(path, dtype=dtype, mode="r")
     if not values.dtype.isnative:  # a big-endian machine has to swap, hence to copy
         values = values.astype(dtype.newbyteorder("="))
-    return image_from_array(values, dimensions, name)
+    return image_from_array(values, dimensions, name=name)
 
 
 def raw_slabs(path):

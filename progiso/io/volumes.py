@@ -121,7 +121,15 @@ def compress_file(
     source = _SLABS.get(suffix_of(path), lambda path: None)(path)
     if source is None:
         image = read(path, progress=_part(progress, 0.0))
-        return compress(image, rate, array, component, threads, _part(progress, 0.5), mask_nan)
+        return compress(
+            image,
+            rate=rate,
+            array=array,
+            component=component,
+            threads=threads,
+            progress=_part(progress, 0.5),
+            mask_nan=mask_nan,
+        )
     if array not in (None, source.name):
         raise ValueError(f"the image has no array {array!r}; it has: {source.name!r}")
     volume = build(

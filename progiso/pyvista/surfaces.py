@@ -159,7 +159,7 @@ def add_isosurface(
     prop = make_isosurface(
         image,
         isovalue,
-        _colors(plotter, color) if table is None else _color_function(table),
+        color=_colors(plotter, color) if table is None else _color_function(table),
         rate=rate,
         speculation=speculation,
         memory_budget=memory_budget,

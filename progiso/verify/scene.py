@@ -30,7 +30,7 @@ RATE = 32
 
 def compressed(values, rate=RATE, **geometry):
     """A compressed volume of values [z, y, x]; `geometry` as `fields.make_image` has it."""
-    return compress(make_image(values, **geometry), rate)
+    return compress(make_image(values, **geometry), rate=rate)
 
 
 def decoded(image, user=None):

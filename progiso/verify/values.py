@@ -135,7 +135,7 @@ def _hidden(cached, settings):
     hole = np.linalg.norm(place - (20.0, 12.0, 11.0), axis=-1) < 8
     hole |= np.random.default_rng(19).random(shape) < 0.02
     values = np.where(hole, np.nan, blobs(shape, 3)).astype(np.float32)
-    image = compress(make_image(values), RATE, mask_nan=True)
+    image = compress(make_image(values), rate=RATE, mask_nan=True)
     cells = np.zeros(np.array(shape) - 1, bool)
     for corner in np.ndindex(2, 2, 2):
         cells |= hole[tuple(slice(c, n - 1 + c) for c, n in zip(corner, shape))]

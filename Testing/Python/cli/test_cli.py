@@ -38,7 +38,7 @@ def folder(tmp_path_factory):
 
 
 def test_compress_is_the_librarys(folder):
-    expected = progiso.compress(progiso.read(folder / "plain.vti"), 6)
+    expected = progiso.compress(progiso.read(folder / "plain.vti"), rate=6)
     packed = progiso.read(folder / "packed.vti")
     assert same_bits(reference_values(packed), reference_values(expected))
     assert (
@@ -151,7 +151,7 @@ def test_render_several_isovalues(folder):
 def test_speculation_and_memory_budget_change_no_depth(folder):
     """Speculation only saves passes; with little memory the image is the same."""
     progiso.save(
-        progiso.compress(make_image(blobs((90, 80, 100), 3, waves=6)), 6), folder / "large.vti"
+        progiso.compress(make_image(blobs((90, 80, 100), 3, waves=6)), rate=6), folder / "large.vti"
     )
     arguments = ("large.vti", "--size", "160x120", "--orbit", "2/5")
     whole, at_once = render(folder, *arguments)
@@ -183,7 +183,7 @@ def test_render_raw_by_its_name(folder):
     depth, statistics = render(
         folder, "blobs_44x36x40_float32.raw", "--size", "120x90", "--orbit", "0/3"
     )
-    volume = reference_volume(progiso.compress(make_image(blobs((40, 36, 44), 3)), 8))
+    volume = reference_volume(progiso.compress(make_image(blobs((40, 36, 44), 3)), rate=8))
     check_depth(depth, cast(volume, 0.1, orbit(volume, 0, 3), (120, 90), tolerances.SLACK))
 
 

@@ -36,8 +36,8 @@ def test_as_pyvista_wraps_them():
 def test_types(kind):
     """VTK's own, in either order of bytes, and those that it has not: truth values, half and long double precision."""
     array = (10 * FIELD.T).astype(kind)
-    expected = progiso.compress(make_image(array.T.astype(np.float32)), 32)
-    assert same_bits(reference_values(progiso.compress(array, 32)), reference_values(expected))
+    expected = progiso.compress(make_image(array.T.astype(np.float32)), rate=32)
+    assert same_bits(reference_values(progiso.compress(array, rate=32)), reference_values(expected))
 
 
 def test_contour_render_and_save(image, tmp_path):
@@ -45,7 +45,9 @@ def test_contour_render_and_save(image, tmp_path):
     of_array, of_image = (progiso.contour(volume, 0.1, rate=12) for volume in (array, image))
     assert of_array.GetNumberOfPolys() == of_image.GetNumberOfPolys() > 100
     assert progiso.contour(array, 0.1).GetNumberOfPolys() > 100
-    of_array, of_image = (progiso.render(volume, 0.1, (64, 48)).image for volume in (array, image))
+    of_array, of_image = (
+        progiso.render(volume, 0.1, size=(64, 48)).image for volume in (array, image)
+    )
     assert np.array_equal(of_array, of_image) and np.ptp(of_array) > 100
     assert (
         progiso.make_isosurface(array, 0.1).GetBounds()

@@ -180,12 +180,12 @@ def test_equals_reading_whole(case, tmp_path, monkeypatch):
     path = write(tmp_path, **options)
     component = options.get("components", 1) - 1
     image = progiso.read(path)
-    expected = progiso.compress(image, 6, component=component)
+    expected = progiso.compress(image, rate=6, component=component)
     assert np.ptp(np.array(progiso.describe(expected)["range"])) > 10
     monkeypatch.setattr(progiso.io.volumes, "read", None)
     for slab_bytes in (1, 9 * 7 * 2 * 8, 2**25):
         monkeypatch.setattr(slab_files, "_SLAB_BYTES", slab_bytes)
-        volume = progiso.compress_file(path, 6, component=component)
+        volume = progiso.compress_file(path, rate=6, component=component)
         check_same(volume, expected)
         assert volume.GetExtent() == image.GetExtent()
         assert volume.GetSpacing() == image.GetSpacing() and volume.GetOrigin() == image.GetOrigin()
@@ -206,8 +206,8 @@ def test_other_files_are_read_whole(suffix, tmp_path):
     else:
         path = write_nifti(tmp_path, ".nii.gz", flipped=True)
     seen = []
-    volume = progiso.compress_file(path, 6, progress=seen.append)
-    check_same(volume, progiso.compress(progiso.read(path), 6))
+    volume = progiso.compress_file(path, rate=6, progress=seen.append)
+    check_same(volume, progiso.compress(progiso.read(path), rate=6))
     assert seen == sorted(seen) and seen[-1] == 1
 
 
@@ -270,14 +270,14 @@ def test_garbage_in_a_packed_file(tmp_path):
 
 def test_errors_name_the_argument(tmp_path):
     path = write_raw(tmp_path, "int16")
-    for arguments, kind, words in (
-        ((path, 33), ValueError, "rate"),
-        ((path, 8, "none"), ValueError, "'none'.*'volume'"),
-        ((path, 8, None, 1), RuntimeError, "Component is 1"),
-        ((tmp_path / "none.raw",), FileNotFoundError, "none.raw"),
+    for file, options, kind, words in (
+        (path, {"rate": 33}, ValueError, "rate"),
+        (path, {"array": "none"}, ValueError, "'none'.*'volume'"),
+        (path, {"component": 1}, RuntimeError, "Component is 1"),
+        (tmp_path / "none.raw", {}, FileNotFoundError, "none.raw"),
     ):
         with pytest.raises(kind, match=words):
-            progiso.compress_file(*arguments)
+            progiso.compress_file(file, **options)
 
 
 # --- large files ---------------------------------------------------------------------------------------------------------------

@@ -97,7 +97,7 @@ def open_edges(surface):
 @pytest.mark.parametrize("name", SCANS)
 def test_scans(name):
     """All that a scan's catalogue entry proposes, at once."""
-    volume = progiso.compress(progiso.read(fetch(name)), 8)
+    volume = progiso.compress(progiso.read(fetch(name)), rate=8)
     surface = check_against_vtk(volume, list(SCANS[name].isovalues.values()))
     assert surface.GetNumberOfPolys() > 500_000
 
@@ -122,7 +122,7 @@ def test_random_fields(shape, kind, seed, rate, quantiles, brick_size, spacing, 
         values, spacing=spacing, extent_start=start, origin=(1, -2, 3), direction=direction
     )
     isovalues = [float(np.quantile(values, q, method="nearest")) for q in quantiles]
-    check_against_vtk(progiso.compress(image, rate), isovalues, brick_size)
+    check_against_vtk(progiso.compress(image, rate=rate), isovalues, brick_size)
 
 
 @pytest.mark.parametrize("direction", [np.eye(3), ROTATION, np.diag([1, -1, 1])])
@@ -135,7 +135,7 @@ def test_world_coordinates(direction):
         extent_start=(5, -6, 7),
         direction=direction,
     )
-    surface = check_against_vtk(progiso.compress(image, 8), [0.1], 8)
+    surface = check_against_vtk(progiso.compress(image, rate=8), [0.1], 8)
     assert surface.GetNumberOfPolys() > 1000
 
 
@@ -144,26 +144,26 @@ def test_cell_data_lie_in_the_centres():
     cells = make_image(
         values, cells=True, spacing=(0.5, 2, 1), origin=(9, 8, 7), extent_start=(5, -6, 7)
     )
-    ours = contoured(progiso.compress(cells, 8), [0.1], 8)
+    ours = contoured(progiso.compress(cells, rate=8), [0.1], 8)
     origin = np.array([9, 8, 7]) + 0.5 * np.array([0.5, 2, 1])
     centres = make_image(values, spacing=(0.5, 2, 1), origin=origin, extent_start=(5, -6, 7))
-    check_same(ours, contoured(progiso.compress(centres, 8), [0.1], 8))
+    check_same(ours, contoured(progiso.compress(centres, rate=8), [0.1], 8))
 
 
 def test_closed_where_the_volume_is():
     """Edges of the surface lie in the volume's faces; a sphere has none."""
     sphere = -np.linalg.norm(np.stack(np.meshgrid(*[np.linspace(-1, 1, 40)] * 3)), axis=0)
-    surface = contoured(progiso.compress(make_image(sphere), 10), [-0.7], 8)
+    surface = contoured(progiso.compress(make_image(sphere), rate=10), [-0.7], 8)
     assert surface.GetNumberOfPolys() > 1000 and len(open_edges(surface)) == 0
     assert surface.GetNumberOfPoints() - surface.GetNumberOfPolys() // 2 == 2  # Euler's
-    surface = contoured(progiso.compress(make_image(sphere), 10), [-1.2], 8)
+    surface = contoured(progiso.compress(make_image(sphere), rate=10), [-1.2], 8)
     ends = vtk_to_numpy(surface.GetPoints().GetData())[open_edges(surface)]
     assert len(ends) > 100
     assert np.isin(ends, [0, 39]).any(axis=2).all()
 
 
 def test_settings():
-    volume = progiso.compress(make_image(blobs((20, 20, 20)), "density"), 8)
+    volume = progiso.compress(make_image(blobs((20, 20, 20)), "density"), rate=8)
     for normals in (False, True):
         for gradients in (False, True):
             for scalars in (False, True):
@@ -195,7 +195,7 @@ def test_values_as_in_vtks_filters():
 
 def test_threads_do_not_show():
     """Not even in the order of points and triangles, nor does the backend."""
-    volume = progiso.compress(make_image(blobs((50, 40, 60), 4, waves=6)), 6)
+    volume = progiso.compress(make_image(blobs((50, 40, 60), 4, waves=6)), rate=6)
     first = contoured(volume, [0.1, 0.3], 8, threads=1)
     before = vtkSMPTools.GetBackend()
     try:
@@ -216,7 +216,7 @@ def test_memory_is_that_of_a_brick_a_thread(threads):
     algorithm = vtkZFPContour()
     algorithm.SetBrickSize(32)
     algorithm.SetNumberOfThreads(threads)
-    surface = run(algorithm, progiso.compress(make_image(blobs((130, 140, 150), 5)), 4), [0.1])
+    surface = run(algorithm, progiso.compress(make_image(blobs((130, 140, 150), 5)), rate=4), [0.1])
     assert surface.GetNumberOfPolys() > 10_000
     brick = 4 * 40**3
     assert brick <= algorithm.GetPeakSampleBytes() <= threads * brick < 4 * 130 * 140 * 150
@@ -227,14 +227,14 @@ def test_bricks_are_decoded_when_they_hold_an_isovalue():
     z = np.broadcast_to(np.arange(65.0)[:, None, None], (65, 33, 33))
     algorithm = vtkZFPContour()
     algorithm.SetBrickSize(16)
-    volume = progiso.compress(make_image(z), 32)
+    volume = progiso.compress(make_image(z), rate=32)
     run(algorithm, volume, [3.5])
     assert algorithm.GetNumberOfDecodedBricks() == algorithm.GetNumberOfBricks() == 2 * 2 * 4
     for isovalues, layers in (([20.5], 1), ([20.5, 60.25], 2), ([1000, -1], 0)):
         run(algorithm, volume, isovalues)
         assert algorithm.GetNumberOfDecodedBricks() == 4 * layers
     check_same(run(algorithm, volume, [16, 40.5]), contoured(volume, [16, 40.5], 16))
-    run(algorithm, progiso.compress(make_image(z), 16), [20.5])
+    run(algorithm, progiso.compress(make_image(z), rate=16), [20.5])
     assert algorithm.GetNumberOfDecodedBricks() == 16
 
 
@@ -247,7 +247,7 @@ def test_brick_sizes_are_multiples_of_four():
 
 def test_progress_rises_in_the_calling_thread():
     seen = []
-    volume = progiso.compress(make_image(blobs((257, 129, 129))), 2)
+    volume = progiso.compress(make_image(blobs((257, 129, 129))), rate=2)
     progiso.contour(volume, 0.1, threads=1, progress=seen.append)
     assert len(seen) >= 2 and seen == sorted(seen) and seen[-1] == 1
 
@@ -257,7 +257,7 @@ def test_unaligned_memory():
     from vtkmodules.util.numpy_support import numpy_to_vtk
     from vtkmodules.vtkCommonDataModel import vtkImageData
 
-    volume = progiso.compress(make_image(blobs((20, 20, 20))), 8)
+    volume = progiso.compress(make_image(blobs((20, 20, 20))), rate=8)
     stream = metadata(volume, "Stream")
     shifted = np.empty(len(stream) + 16, np.uint8)
     shifted = shifted[(3 - shifted.ctypes.data) % 8 :][: len(stream)]
@@ -280,7 +280,7 @@ def test_plain_images_are_vtks():
         run(vtkFlyingEdges3D(), image, [0.4, 0.6]),
     )
     ours = progiso.contour(image, 0.4, rate=8, gradients=True)
-    check_same(ours, contoured(progiso.compress(image, 8), [0.4]))
+    check_same(ours, contoured(progiso.compress(image, rate=8), [0.4]))
 
 
 @pytest.mark.parametrize("cells", [False, True])
@@ -307,20 +307,20 @@ def test_plain_input_is_one_clear_error():
 
 def test_errors_name_what_is_wrong():
     image = make_image(noise((4, 4, 4)))
-    for arguments, kind, words in (
-        ((image, float("nan")), ValueError, "finite"),
-        ((image, [0, float("inf")]), ValueError, "finite"),
-        ((image, []), ValueError, "isovalue"),
-        ((image, ["high"]), TypeError, "high"),
-        ((image, 0, 40), ValueError, "rate"),
-        ((image, 0, None, "none"), ValueError, "'none'.*'field'"),
-        ((image, 0, None, None, 1), ValueError, "component is 1"),
-        ((progiso.compress(image), 0, None, "none"), ValueError, "'none'"),
-        ((make_image(noise((1, 4, 4))), 0), ValueError, "4 x 4 x 1"),
-        (([1, 2], 0), TypeError, "vtkImageData"),
+    for volume, isovalues, options, kind, words in (
+        (image, float("nan"), {}, ValueError, "finite"),
+        (image, [0, float("inf")], {}, ValueError, "finite"),
+        (image, [], {}, ValueError, "isovalue"),
+        (image, ["high"], {}, TypeError, "high"),
+        (image, 0, {"rate": 40}, ValueError, "rate"),
+        (image, 0, {"array": "none"}, ValueError, "'none'.*'field'"),
+        (image, 0, {"component": 1}, ValueError, "component is 1"),
+        (progiso.compress(image), 0, {"array": "none"}, ValueError, "'none'"),
+        (make_image(noise((1, 4, 4))), 0, {}, ValueError, "4 x 4 x 1"),
+        ([1, 2], 0, {}, TypeError, "vtkImageData"),
     ):
         with pytest.raises(kind, match=words):
-            progiso.contour(*arguments)
+            progiso.contour(volume, isovalues, **options)
 
 
 # --- files -------------------------------------------------------------------------------------------------------------------------
@@ -335,8 +335,8 @@ def call(folder, *arguments):
 def test_command_line(tmp_path):
     image = make_image(blobs((20, 22, 24)), spacing=(1, 2, 3))
     progiso.save(image, tmp_path / "plain.vti")
-    progiso.save(progiso.compress(image, 6), tmp_path / "packed.vti")
-    expected = progiso.contour(progiso.compress(image, 6), [0.1, 0.3])
+    progiso.save(progiso.compress(image, rate=6), tmp_path / "packed.vti")
+    expected = progiso.contour(progiso.compress(image, rate=6), [0.1, 0.3])
     for arguments in (["packed.vti"], ["plain.vti", "--rate", 6]):
         name, *rest = arguments
         done = call(tmp_path, name, "out.vtp", "--isovalue", 0.1, "--isovalue", 0.3, *rest)
@@ -395,7 +395,7 @@ def test_errors_are_one_line(tmp_path, case):
 
 def test_values_survive_the_round_trip():
     """The surface lies where the decoded samples say: every point's interpolated value is the isovalue."""
-    volume = progiso.compress(make_image(blobs((24, 25, 26), 7)), 6)
+    volume = progiso.compress(make_image(blobs((24, 25, 26), 7)), rate=6)
     values = samples_of(progiso.decompress(volume))
     points = vtk_to_numpy(contoured(volume, [0.2], 8).GetPoints().GetData()).astype(float)
     low = np.floor(points).astype(int)

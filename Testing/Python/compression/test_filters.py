@@ -59,7 +59,7 @@ def compressor(image, rate=8, **settings):
 @pytest.mark.parametrize("rate", RATES)
 def test_stream_is_zfps_own(rate):
     values = noise((9, 6, 11))
-    compressed = progiso.compress(make_image(values), rate)
+    compressed = progiso.compress(make_image(values), rate=rate)
     expected = zfp_reference.encode(values, rate)
     assert stream_of(compressed)[: len(expected)] == expected
     assert len(stream_of(compressed)) % 8 == 0
@@ -73,7 +73,7 @@ def test_stream_is_zfps_own(rate):
 def test_partial_blocks(shape):
     """Every remainder of four meets every other at the border."""
     values = noise(shape, 1)
-    compressed = progiso.compress(make_image(values), 6)
+    compressed = progiso.compress(make_image(values), rate=6)
     assert stream_of(compressed).startswith(zfp_reference.encode(values, 6))
     assert same_bits(samples_of(progiso.decompress(compressed)), reference_values(compressed))
     assert tuple(metadata(compressed, "Dimensions")) == shape[::-1]
@@ -82,8 +82,8 @@ def test_partial_blocks(shape):
 @pytest.mark.parametrize("threads", [1, 2, 3])
 def test_threads_do_not_show(threads):
     image = make_image(noise((33, 20, 18), 2))
-    assert stream_of(progiso.compress(image, 5, threads=threads)) == stream_of(
-        progiso.compress(image, 5, threads=1)
+    assert stream_of(progiso.compress(image, rate=5, threads=threads)) == stream_of(
+        progiso.compress(image, rate=5, threads=1)
     )
 
 
@@ -92,7 +92,7 @@ def test_threads_do_not_show(threads):
 def test_scalar_types(kind, cells):
     values = (marschner_lobb(9) * 100).astype(kind)
     image = make_image(values, "name", cells)
-    compressed = progiso.compress(image, 16)
+    compressed = progiso.compress(image, rate=16)
     assert (
         metadata(compressed, "ScalarType")[0]
         == (image.GetCellData() if cells else image.GetPointData()).GetScalars().GetDataType()
@@ -132,20 +132,20 @@ def test_array_and_component_are_chosen():
     other = numpy_to_vtk(second.reshape(-1, 3), deep=True)
     other.SetName("second")
     image.GetPointData().AddArray(other)
-    compressed = progiso.compress(image, 32, array="second", component=2)
+    compressed = progiso.compress(image, rate=32, array="second", component=2)
     assert stream_of(compressed).startswith(zfp_reference.encode(second[..., 2], 32))
     assert (
         compressed.GetFieldData().GetAbstractArray("ProgIso.ZFP.ArrayName").GetValue(0) == "second"
     )
     assert metadata(compressed, "Component")[0] == 2
-    assert stream_of(progiso.compress(image, 32)).startswith(zfp_reference.encode(first, 32))
+    assert stream_of(progiso.compress(image, rate=32)).startswith(zfp_reference.encode(first, 32))
 
 
 @pytest.mark.parametrize("scale", [1e37, 1e30, 1e-28, 0.0])
 def test_extreme_values(scale):
     """Large, tiny and zero values keep zfp's own bits."""
     values = (noise((6, 7, 5), 5) * scale).astype(np.float32)
-    compressed = progiso.compress(make_image(values), 11)
+    compressed = progiso.compress(make_image(values), rate=11)
     assert stream_of(compressed).startswith(zfp_reference.encode(values, 11))
     assert same_bits(samples_of(progiso.decompress(compressed)), reference_values(compressed))
 
@@ -154,7 +154,7 @@ def test_blocks_that_overflow_in_zfp_are_zero():
     """zfp's scale factor overflows for blocks below 3e-30: where the rest is larger they become what they are beside it."""
     values = noise((8, 8, 8), 5)
     values[:4, :4, :4] *= np.float32(1e-35)
-    restored = samples_of(progiso.decompress(progiso.compress(make_image(values), 16)))
+    restored = samples_of(progiso.decompress(progiso.compress(make_image(values), rate=16)))
     assert not restored[:4, :4, :4].any()
     assert np.abs(restored - values).max() < 0.01
 
@@ -176,7 +176,7 @@ def test_values_that_float32_cannot_hold(case):
     """The stream's units make up for it: what is lost is float32's and zfp's rounding of the differences."""
     offset, scale, kind = UNITS[case]
     values = (offset + scale * blobs((9, 10, 7), 5).astype(float)).astype(kind)
-    compressed = progiso.compress(make_image(values), 32)
+    compressed = progiso.compress(make_image(values), rate=32)
     restored = samples_of(progiso.decompress(compressed))
     assert restored.dtype == np.float64
     original = values.astype(float)
@@ -200,7 +200,7 @@ def test_values_that_float32_cannot_hold(case):
     ],
 )
 def test_values_that_float32_holds_keep_their_units(values):
-    compressed = progiso.compress(make_image(values), 11)
+    compressed = progiso.compress(make_image(values), rate=11)
     assert stream_of(compressed).startswith(zfp_reference.encode(values, 11))
     assert metadata(compressed, "Version")[0] == 1 and progiso.describe(compressed)["scale"] == 1
     assert samples_of(progiso.decompress(compressed)).dtype == np.float32
@@ -358,7 +358,7 @@ def test_vti_carries_the_stream_through_pyvista(tmp_path):
     """pyvista saves and reads a compressed volume untouched."""
     pyvista = pytest.importorskip("pyvista")
     compressed = progiso.compress(
-        make_image(noise((7, 8, 9)), origin=(1, 2, 3), extent_start=(5, 6, 7)), 3
+        make_image(noise((7, 8, 9)), origin=(1, 2, 3), extent_start=(5, 6, 7)), rate=3
     )
     pyvista.wrap(compressed).save(tmp_path / "volume.vti")
     read = pyvista.read(tmp_path / "volume.vti")
@@ -373,7 +373,7 @@ def test_writer_against_the_tool(tmp_path, header, rate, lacking):
     if not zfp_reference.has_tool():
         lacking("the zfp command line tool is not installed (Debian: zfp)")
     values = noise((6, 9, 7), 6)
-    compressed = progiso.compress(make_image(values), rate)
+    compressed = progiso.compress(make_image(values), rate=rate)
     path = tmp_path / "volume.zfp"
     writer = vtkZFPWriter()
     writer.SetInputData(compressed)
@@ -435,16 +435,16 @@ def test_reader_against_the_tool(tmp_path, header, rate, lacking):
 @pytest.mark.parametrize("rate", [9 / 64, 7.3, 32])
 def test_reader_puts_parts_together(tmp_path, header, rate):
     """Files are read in parts of a quarter of a MiB, by several threads."""
-    compressed = progiso.compress(make_image(noise((61, 62, 65), 8)), rate)
+    compressed = progiso.compress(make_image(noise((61, 62, 65), 8)), rate=rate)
     writer = vtkZFPWriter()
     writer.SetInputData(compressed)
     writer.SetFileName(str(tmp_path / "volume.zfp"))
     writer.SetWriteHeader(header)
     assert writer.Write() == 1
     dimensions = None if header else (65, 62, 61)
-    assert stream_of(progiso.read(tmp_path / "volume.zfp", dimensions, rate)) == stream_of(
-        compressed
-    )
+    assert stream_of(
+        progiso.read(tmp_path / "volume.zfp", dimensions=dimensions, rate=rate)
+    ) == stream_of(compressed)
 
 
 @pytest.mark.parametrize("cells", [False, True])
@@ -483,7 +483,7 @@ def test_pieces_hold_the_blocks_of_the_whole(pieces, cells):
 def test_cropping_keeps_blocks_as_they_are(bits):
     """Rows of blocks that begin at any bit of a word."""
     compressed = progiso.compress(
-        make_image(noise((21, 18, 30), 5), extent_start=(3, -4, 5)), bits / 64
+        make_image(noise((21, 18, 30), 5), extent_start=(3, -4, 5)), rate=bits / 64
     )
     part, volume = vtkImageData(), vtkCompressedVolume()
     part.DeepCopy(compressed)
@@ -503,7 +503,7 @@ def test_cropping_keeps_blocks_as_they_are(bits):
 
 
 def test_a_stream_of_another_piece_is_refused():
-    compressed = progiso.compress(make_image(noise((9, 9, 9))), 8)
+    compressed = progiso.compress(make_image(noise((9, 9, 9))), rate=8)
     compressed.SetExtent(4, 12, 0, 8, 0, 4)
     reader = vtkCompressedVolume()
     assert not reader.Read(compressed) and "another piece" in reader.GetErrorMessage()
@@ -512,7 +512,7 @@ def test_a_stream_of_another_piece_is_refused():
 def test_vti_with_appended_data(tmp_path):
     """Raw bytes behind the XML hold the same, in less."""
     compressed = progiso.compress(
-        make_image(noise((30, 31, 32)), origin=(1, 2, 3), extent_start=(5, 6, 7)), 8
+        make_image(noise((30, 31, 32)), origin=(1, 2, 3), extent_start=(5, 6, 7)), rate=8
     )
     progiso.save(compressed, tmp_path / "in_line.vti")
     progiso.save(compressed, tmp_path / "appended.vti", appended=True)

@@ -28,8 +28,10 @@ def dealt(values, depth):
 @pytest.mark.parametrize("rate", [9 / 64, 1, 2.51, 5.25, 16, 32])
 def test_however_the_slices_are_dealt(rate, depth):
     values = noise((27, 9, 13), 1)
-    expected = progiso.compress(make_image(values, "name"), rate)
-    check_same(progiso.compress_slabs(dealt(values, depth), (13, 9, 27), rate, "name"), expected)
+    expected = progiso.compress(make_image(values, "name"), rate=rate)
+    check_same(
+        progiso.compress_slabs(dealt(values, depth), (13, 9, 27), rate=rate, name="name"), expected
+    )
 
 
 @pytest.mark.parametrize(
@@ -37,10 +39,11 @@ def test_however_the_slices_are_dealt(rate, depth):
 )
 def test_partial_blocks(shape):
     values = noise(shape, 2)
-    expected = progiso.compress(make_image(values, "name"), 3)
-    check_same(progiso.compress_slabs(dealt(values, 4), shape[::-1], 3, "name"), expected)
+    expected = progiso.compress(make_image(values, "name"), rate=3)
+    check_same(progiso.compress_slabs(dealt(values, 4), shape[::-1], rate=3, name="name"), expected)
     check_same(
-        progiso.compress_slabs(values.__getitem__, shape[::-1], 3, "name", threads=3), expected
+        progiso.compress_slabs(values.__getitem__, shape[::-1], rate=3, name="name", threads=3),
+        expected,
     )
 
 
@@ -48,17 +51,21 @@ def test_partial_blocks(shape):
 def test_sample_types(kind):
     values = (noise((9, 6, 7), 3) * 30).astype(kind)
     expected = progiso.compress(
-        make_image(values.astype(values.dtype.newbyteorder("=")), "name"), 8
+        make_image(values.astype(values.dtype.newbyteorder("=")), "name"), rate=8
     )
-    check_same(progiso.compress_slabs(dealt(values, 4), (7, 6, 9), 8, "name"), expected)
+    check_same(progiso.compress_slabs(dealt(values, 4), (7, 6, 9), rate=8, name="name"), expected)
 
 
 def test_memory_in_another_order():
     """Views with strides, and slices instead of slabs."""
     values = noise((7, 6, 12), 4)
-    expected = progiso.compress(make_image(values[::-1, :, ::2], "name"), 8)
-    check_same(progiso.compress_slabs([values[::-1, :, ::2]], (6, 6, 7), 8, "name"), expected)
-    check_same(progiso.compress_slabs(iter(values[::-1, :, ::2]), (6, 6, 7), 8, "name"), expected)
+    expected = progiso.compress(make_image(values[::-1, :, ::2], "name"), rate=8)
+    check_same(
+        progiso.compress_slabs([values[::-1, :, ::2]], (6, 6, 7), rate=8, name="name"), expected
+    )
+    check_same(
+        progiso.compress_slabs(iter(values[::-1, :, ::2]), (6, 6, 7), rate=8, name="name"), expected
+    )
 
 
 def test_progress_rises():
@@ -88,7 +95,7 @@ REFUSALS = {
 def test_refusals_are_clear(case):
     values, dimensions, rate, words = REFUSALS[case]
     with pytest.raises(RuntimeError, match=words):
-        progiso.compress_slabs(dealt(values, 4), dimensions, rate)
+        progiso.compress_slabs(dealt(values, 4), dimensions, rate=rate)
 
 
 def test_shapes_are_checked():
@@ -117,7 +124,7 @@ def test_threads_do_not_show(name):
     slice_at = generator.make(axes, **options)
     whole = np.stack([slice_at(z) for z in range(9)]).astype(np.float32)
     for threads in (1, 3):
-        slabs = compute_slabs(slice_at, (150, 130, 9), threads)
+        slabs = compute_slabs(slice_at, (150, 130, 9), threads=threads)
         assert np.array_equal(np.concatenate([slab.copy() for slab in slabs]), whole)
 
 
@@ -126,7 +133,7 @@ def test_compressed_is_what_fetch_gives_compressed(tmp_path, rate):
     options = {"size": (44, 30, 37), "k": 3}
     path = compressed("gyroid", rate=rate, folder=tmp_path, **options)
     raw = progiso.read(fetch("gyroid", folder=tmp_path, **options))
-    assert stream_of(progiso.read(path)) == stream_of(progiso.compress(raw, rate))
+    assert stream_of(progiso.read(path)) == stream_of(progiso.compress(raw, rate=rate))
     made = path.stat().st_mtime_ns
     assert compressed("gyroid", rate=rate, folder=tmp_path, **options) == path
     assert path.stat().st_mtime_ns == made
@@ -177,7 +184,7 @@ def test_command_line(tmp_path):
         check=True,
     )
     expected = progiso.compress(
-        progiso.read(fetch("porous", size=(24, 20, 17), seed=5, folder=tmp_path)), 3
+        progiso.read(fetch("porous", size=(24, 20, 17), seed=5, folder=tmp_path)), rate=3
     )
     assert stream_of(progiso.read(done.stdout.strip())) == stream_of(expected)
 

@@ -23,13 +23,13 @@ SIZE = (120, 90)
 
 @pytest.fixture(scope="module")
 def plain():
-    return progiso.compress(make_image(FIELD.astype(np.float32)), 32)
+    return progiso.compress(make_image(FIELD.astype(np.float32)), rate=32)
 
 
 @pytest.fixture(scope="module")
 def shifted():
     """The same field on a large value, of which float32 would leave nothing."""
-    image = progiso.compress(make_image(OFFSET + SCALE * FIELD), 32)
+    image = progiso.compress(make_image(OFFSET + SCALE * FIELD), rate=32)
     assert progiso.describe(image)["offset"] != 0
     return image
 
@@ -116,7 +116,7 @@ def test_slabs(shifted):
     about = progiso.describe(shifted)
     values, units = OFFSET + SCALE * FIELD, (about["offset"], about["scale"])
     for slabs in (iter(values), lambda z: values[z]):
-        image = progiso.compress_slabs(slabs, SHAPE[::-1], 32, units=units)
+        image = progiso.compress_slabs(slabs, SHAPE[::-1], rate=32, units=units)
         assert stream_of(image) == stream_of(shifted)
     with pytest.raises(RuntimeError, match="scale"):
         progiso.compress_slabs(iter(values), SHAPE[::-1], units=(0, -1))

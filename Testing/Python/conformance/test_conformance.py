@@ -67,14 +67,14 @@ from progiso.oracle.caster import Camera
 
 @pytest.fixture(scope="module")
 def image():
-    return progiso.compress(make_image(blobs(SHAPE, 12, waves=2)), 16)
+    return progiso.compress(make_image(blobs(SHAPE, 12, waves=2)), rate=16)
 
 
 @pytest.fixture(scope="module")
 def cube():
     """What is lit has as many samples along each axis: VTK's mapper stretches normals by their ratios, where a light is in the
     scene, and reaches for their differences one part in so many too far."""
-    return progiso.compress(make_image(blobs((48, 48, 48), 12, waves=1)), 16)
+    return progiso.compress(make_image(blobs((48, 48, 48), 12, waves=1)), rate=16)
 
 
 # --- blanking ----------------------------------------------------------------------------------------------------------------
@@ -128,7 +128,7 @@ def test_blanking(kind):
     """VTK's mapper leaves out half a voxel more around what is hidden, so VTK's triangles are the reference."""
     grid = blanked(kind)
     ours, theirs = Stage(True), Stage(False)
-    compressed = progiso.compress(grid, 24)
+    compressed = progiso.compress(grid, rate=24)
     show(ours, compressed)
     mapper, actor = vtkPolyDataMapper(), vtkActor()
     mapper.SetInputData(visible_triangles(grid))
@@ -143,7 +143,7 @@ def test_blanking(kind):
     whole = Stage(True)
     show(
         whole,
-        progiso.compress(make_image(blobs(SHAPE, 12, waves=2), cells=kind == "cell data"), 24),
+        progiso.compress(make_image(blobs(SHAPE, 12, waves=2), cells=kind == "cell data"), rate=24),
     )
     assert far_apart(picture, whole.picture())[0] > 2 * tolerances.VTK_PIXELS, (
         "hardly anything that is seen is hidden"
@@ -153,10 +153,10 @@ def test_blanking(kind):
 def test_the_mapper_takes_a_uniform_grid_itself():
     grid = blanked("points")
     pictures = []
-    for image in (grid, progiso.compress(grid, 24)):
+    for image in (grid, progiso.compress(grid, rate=24)):
         stage = Stage(True)
         stage.add(image, OPAQUE, Rate=24)
-        stage.look_at(progiso.compress(grid, 24))
+        stage.look_at(progiso.compress(grid, rate=24))
         pictures.append(stage.picture())
     assert np.array_equal(*pictures)
 
@@ -208,7 +208,7 @@ def test_a_narrow_colour_is_not_smeared():
     stage = Stage(True)
     show(
         stage,
-        progiso.compress(make_image(values), 24),
+        progiso.compress(make_image(values), rate=24),
         {999.0: (*RED, 1.0), 1000.0: (*GREEN, 1.0), 1001.0: (*BLUE, 1.0)},
     )
     picture = stage.picture()[np.isfinite(progiso.depth(stage.mapper))]
@@ -429,7 +429,7 @@ def test_oriented_image(spacing):
         direction=direction,
         extent_start=(2, -7, 4),
     )
-    compressed = progiso.compress(values, 16)
+    compressed = progiso.compress(values, rate=16)
     check_scene_like_vtk(lambda stage: show(stage, compressed, NESTED))
 
 
@@ -455,7 +455,7 @@ def test_from_perspective_to_parallel(image):
 )
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
 def test_camera_inside(spacing, matrix, angle, surfaces):
-    compressed = progiso.compress(make_image(blobs(SHAPE, 12, waves=2), spacing=spacing), 16)
+    compressed = progiso.compress(make_image(blobs(SHAPE, 12, waves=2), spacing=spacing), rate=16)
     place = np.append(CENTRE * spacing, 1)
     moved = np.eye(4) if matrix is None else matrix
     eye, focus = (moved @ (place + [*np.array(d) * spacing, 0]) for d in ((2, 3, 1), (9, 6, -4)))
@@ -761,7 +761,7 @@ def test_translucent_surfaces_occlude_nothing(image):
 def test_cell_data(surfaces):
     """Values of cells are samples at their centres; VTK's draws them to the cells' outer faces, ours between the centres."""
     compressed = progiso.compress(
-        make_image(blobs(SHAPE, 12, waves=2), cells=True, spacing=(1, 1.5, 1)), 16
+        make_image(blobs(SHAPE, 12, waves=2), cells=True, spacing=(1, 1.5, 1)), rate=16
     )
 
     def build(stage):
@@ -794,7 +794,7 @@ def test_cell_data(surfaces):
 )
 def test_data_types(kind):
     values = (60 + 50 * np.clip(blobs(SHAPE, 12, waves=2), -1, 1)).astype(kind)
-    compressed = progiso.compress(make_image(values), 16)
+    compressed = progiso.compress(make_image(values), rate=16)
     check_scene_like_vtk(lambda stage: show(stage, compressed, {65: (*GREEN, 1.0)}))
 
 
@@ -803,14 +803,14 @@ def several(stage, arrays, component=None):
     plain = make_image(next(iter(arrays.values())), name=next(iter(arrays)))
     for name, values in arrays.items():
         plain.GetPointData().AddArray(make_image(values, name=name).GetPointData().GetScalars())
-    volume = stage.add(progiso.compress(make_image(blobs(SHAPE, 1)), 4), OPAQUE)
+    volume = stage.add(progiso.compress(make_image(blobs(SHAPE, 1)), rate=4), OPAQUE)
     volume.GetMapper().SetInputData(plain)
     stage.look_at(plain_geometry())
     return volume
 
 
 def plain_geometry():
-    return progiso.compress(make_image(np.zeros(SHAPE, np.float32)), 4)
+    return progiso.compress(make_image(np.zeros(SHAPE, np.float32)), rate=4)
 
 
 def test_changed_array():
@@ -866,7 +866,9 @@ def several_of_vtk(values):
 
 def test_time_series():
     """Another image at the input, and another time of the same image object."""
-    steps = [progiso.compress(make_image(blobs(SHAPE, seed, waves=2)), 16) for seed in (12, 5, 12)]
+    steps = [
+        progiso.compress(make_image(blobs(SHAPE, seed, waves=2)), rate=16) for seed in (12, 5, 12)
+    ]
     stages = both(lambda stage: show(stage, steps[0]))
     pictures = []
     for step in steps:

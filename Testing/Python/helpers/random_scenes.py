@@ -44,7 +44,7 @@ def pictures_of_every_kind():
     """Depths and colours of some scenes, as bytes."""
     content = b""
     for seed, kind in enumerate(("noise", "smooth", "waves")):
-        image = progiso.compress(make_image(random_field(kind, (20, 22, 18), seed)), 8)
+        image = progiso.compress(make_image(random_field(kind, (20, 22, 18), seed)), rate=8)
         for settings in (
             {},
             CACHED,

@@ -330,7 +330,7 @@ def test_rates_tell_what_they_cost(results):
     assert points[-1]["wrong"] == 0 and points[-1]["triangles"] == record["topology"]["triangles"]
     values = progiso.read(fetch("gyroid", size=24, k=2)).GetPointData().GetScalars()
     decoded = progiso.decompress(
-        progiso.compress(progiso.read(fetch("gyroid", size=24, k=2)), points[2]["rate"])
+        progiso.compress(progiso.read(fetch("gyroid", size=24, k=2)), rate=points[2]["rate"])
     )
     off = vtk_to_numpy(decoded.GetPointData().GetScalars()).astype(float) - vtk_to_numpy(values)
     assert points[2]["max_error"] == np.abs(off).max()

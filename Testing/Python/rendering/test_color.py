@@ -87,7 +87,7 @@ def test_colour_of_another_array(settings, cells):
 def test_same_from_a_cache_and_from_port_1(lit, opacity):
     """An array, a compressed volume; decoded as a whole or block by block, pass by pass: the same bits."""
     image = ball()
-    right = progiso.compress(image, 16, "right")
+    right = progiso.compress(image, rate=16, array="right")
     ways = (
         {"ColorArrayName": "right"},
         {"ColorArrayName": "right", **CACHED},
@@ -102,7 +102,7 @@ def test_same_from_a_cache_and_from_port_1(lit, opacity):
 def test_a_small_cache_does_not_matter():
     field, colors = (
         make_image(blobs((48, 56, 64))),
-        progiso.compress(make_image(blobs((48, 56, 64), seed=5)), 8),
+        progiso.compress(make_image(blobs((48, 56, 64), seed=5)), rate=8),
     )
     camera = Camera((32.0, 28.0, 140.0), (32.0, 28.0, 24.0), (0.0, 1.0, 0.0))
     scenes = [
@@ -141,7 +141,10 @@ def test_errors():
     image = ball()
     for settings, problem in (
         ({"ColorArrayName": "left"}, 'no array "left"'),
-        ({"ColorInputData": progiso.compress(make_image(blobs((8, 8, 8))), 4)}, "other dimensions"),
+        (
+            {"ColorInputData": progiso.compress(make_image(blobs((8, 8, 8))), rate=4)},
+            "other dimensions",
+        ),
     ):
         scene = scene_of(image, **settings)
         with vtk_messages() as messages:

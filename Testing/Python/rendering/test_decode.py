@@ -21,7 +21,7 @@ def window():
 
 
 def of(values, rate):
-    return progiso.compress(make_image(values), rate)
+    return progiso.compress(make_image(values), rate=rate)
 
 
 @pytest.mark.parametrize("rate", range(1, 33))
@@ -102,4 +102,4 @@ def test_random_streams(window, rate):
 def test_scan(window, rate):
     from progiso.data import fetch
 
-    check_decoding(window, progiso.compress(progiso.read(fetch("ct-cranium")), rate))
+    check_decoding(window, progiso.compress(progiso.read(fetch("ct-cranium")), rate=rate))

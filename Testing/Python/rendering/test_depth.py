@@ -14,7 +14,7 @@ rotation *= np.linalg.det(rotation)
 
 
 def compressed(values, rate=8, **geometry):
-    return progiso.compress(make_image(values, **geometry), rate)
+    return progiso.compress(make_image(values, **geometry), rate=rate)
 
 
 # --- fields and cameras ------------------------------------------------------------------------------------------------------
@@ -242,10 +242,12 @@ def test_empty_blocks():
 def test_plain_image_is_compressed_at_the_rate(rate):
     """A plain image shows exactly what its compressed volume shows."""
     plain = make_image(marschner_lobb(33))
-    camera = orbit(reference_volume(progiso.compress(plain, rate)), 1, 3)
+    camera = orbit(reference_volume(progiso.compress(plain, rate=rate)), 1, 3)
     direct = Scene(plain, 0.5, camera, Rate=rate).depth()
     assert np.isfinite(direct).any()
-    assert direct.tobytes() == Scene(progiso.compress(plain, rate), 0.5, camera).depth().tobytes()
+    assert (
+        direct.tobytes() == Scene(progiso.compress(plain, rate=rate), 0.5, camera).depth().tobytes()
+    )
 
 
 # --- real scans --------------------------------------------------------------------------------------------------------------
@@ -258,7 +260,7 @@ def scan(request):
     """Compress a real scan once for all its tests."""
     from progiso.data import fetch
 
-    return progiso.compress(progiso.read(fetch(request.param)), 8), SCANS[request.param]
+    return progiso.compress(progiso.read(fetch(request.param)), rate=8), SCANS[request.param]
 
 
 @pytest.mark.parametrize("scan", SCANS, indirect=True)

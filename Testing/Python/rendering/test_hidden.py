@@ -78,25 +78,27 @@ def nan_image(hidden, values):
 #: How something gets hidden: the image, compressed, and the cells between its samples that have no surface.
 def hidden_points():
     hidden = ball(SHAPE, 12)
-    return progiso.compress(blank(make_image(blobs(SHAPE, 3)), points=hidden), 12), cells_of(hidden)
+    return progiso.compress(blank(make_image(blobs(SHAPE, 3)), points=hidden), rate=12), cells_of(
+        hidden
+    )
 
 
 def hidden_cells():
     hidden = ball(fewer(SHAPE), 12)
-    return progiso.compress(blank(make_image(blobs(SHAPE, 3)), cells=hidden), 12), hidden
+    return progiso.compress(blank(make_image(blobs(SHAPE, 3)), cells=hidden), rate=12), hidden
 
 
 def refined_cells():
     hidden = ball(fewer(SHAPE), 12, 0.2)
     return progiso.compress(
-        blank(make_image(blobs(SHAPE, 3)), cells=hidden, flag=REFINED_CELL), 12
+        blank(make_image(blobs(SHAPE, 3)), cells=hidden, flag=REFINED_CELL), rate=12
     ), hidden
 
 
 def hidden_cells_of_cell_data():
     hidden = speckles(SHAPE, 0.03)
     return progiso.compress(
-        blank(make_image(blobs(SHAPE, 3), cells=True), cells=hidden), 12
+        blank(make_image(blobs(SHAPE, 3), cells=True), cells=hidden), rate=12
     ), cells_of(hidden)
 
 
@@ -104,19 +106,21 @@ def hidden_points_of_cell_data():
     points = ball([n + 1 for n in SHAPE], 11, 0.4)
     hidden = cells_of(points)
     return progiso.compress(
-        blank(make_image(blobs(SHAPE, 3), cells=True), points=points), 12
+        blank(make_image(blobs(SHAPE, 3), cells=True), points=points), rate=12
     ), cells_of(hidden)
 
 
 def nan_samples():
     hidden = speckles(SHAPE, 0.02) | ball(SHAPE, 7, 0.8)
-    return progiso.compress(nan_image(hidden, blobs(SHAPE, 3)), 12, mask_nan=True), cells_of(hidden)
+    return progiso.compress(nan_image(hidden, blobs(SHAPE, 3)), rate=12, mask_nan=True), cells_of(
+        hidden
+    )
 
 
 def all_together():
     points, cells, nan = speckles(SHAPE, 0.01), ball(fewer(SHAPE), 6), ball(SHAPE, 5, 0.1)
     image = blank(nan_image(nan, blobs(SHAPE, 3)), points, cells)
-    return progiso.compress(image, 12, mask_nan=True), cells_of(points | nan) | cells
+    return progiso.compress(image, rate=12, mask_nan=True), cells_of(points | nan) | cells
 
 
 KINDS = [
@@ -184,14 +188,15 @@ def test_the_mapper_hides_what_its_plain_input_does():
     )
     before = scene.depth()
     assert np.array_equal(
-        before, Scene(progiso.compress(image, 12), ISOVALUE, scene.camera, SIZE).depth()
+        before, Scene(progiso.compress(image, rate=12), ISOVALUE, scene.camera, SIZE).depth()
     )
     image.GetPointData().GetArray(vtkDataSetAttributes.GhostArrayName()).Fill(0)
     image.GetPointData().GetArray(vtkDataSetAttributes.GhostArrayName()).Modified()
     after = scene.depth()
     assert (after != before).any()
     assert np.array_equal(
-        after, Scene(progiso.compress(make_image(values), 12), ISOVALUE, scene.camera, SIZE).depth()
+        after,
+        Scene(progiso.compress(make_image(values), rate=12), ISOVALUE, scene.camera, SIZE).depth(),
     )
 
 
@@ -207,7 +212,7 @@ def test_nan_is_an_error_unless_it_is_hidden():
         and "MaskNonFinite" in messages[0]
     )
     scene.mapper.MaskNonFiniteOn()
-    check_depth(scene, progiso.compress(image, 12, mask_nan=True), cells_of(hidden))
+    check_depth(scene, progiso.compress(image, rate=12, mask_nan=True), cells_of(hidden))
 
 
 @pytest.mark.parametrize("cached", [False, True])
@@ -218,8 +223,8 @@ def test_light_at_the_border_of_a_hole(make, cached):
     values = z + 0.4 * y + 0.3 * x
     hidden = make(SHAPE)
     images = (
-        progiso.compress(make_image(values), 32),
-        progiso.compress(blank(make_image(values), hidden), 32),
+        progiso.compress(make_image(values), rate=32),
+        progiso.compress(blank(make_image(values), hidden), rate=32),
     )
     pictures = []
     for image in images:
@@ -255,7 +260,7 @@ def test_light_at_the_border_of_a_hole(make, cached):
 def test_what_hiding_takes():
     """Nothing where nothing is hidden; else the mask, and 16 bytes a slot."""
     image, _ = hidden_points()
-    plain = progiso.compress(make_image(blobs(SHAPE, 3)), 12)
+    plain = progiso.compress(make_image(blobs(SHAPE, 3)), rate=12)
     camera = orbit(reference_volume(plain), 1, 4)
     memory = []
     for each in (plain, image):
@@ -269,7 +274,7 @@ def test_what_hiding_takes():
 
 def test_all_of_it_hidden():
     """Shows nothing, and is no error."""
-    image = progiso.compress(make_image(np.full(SHAPE, np.nan, np.float32)), 8, mask_nan=True)
+    image = progiso.compress(make_image(np.full(SHAPE, np.nan, np.float32)), rate=8, mask_nan=True)
     assert progiso.describe(image)["range"] == [0, 0]
     assert not np.isfinite(Scene(image, 0, Camera((14, 14, 90), (14, 14, 12)), SIZE).depth()).any()
     assert np.isnan(samples_of(progiso.decompress(image))).all()
@@ -294,7 +299,7 @@ def test_round_trip(shape, start, share, rate, cells, seed):
         np.where(samples, np.nan, noise(shape, seed)), cells=cells, extent_start=start
     )
     others = None if cells else speckles(fewer(shape), share, seed + 1)
-    volume = progiso.compress(blank(image, cells=others), rate, mask_nan=True)
+    volume = progiso.compress(blank(image, cells=others), rate=rate, mask_nan=True)
     back = progiso.decompress(volume)
     values = samples_of(back)
     assert np.array_equal(np.isnan(values), samples)
@@ -307,7 +312,7 @@ def test_round_trip(shape, start, share, rate, cells, seed):
     )
     if not cells:
         check_flags(back.GetCellData(), others, HIDDEN_CELL)
-    again = progiso.compress(back, rate)
+    again = progiso.compress(back, rate=rate)
     for name in ("HiddenSamples", "HiddenCells"):
         runs = [v.GetFieldData().GetArray("ProgIso.ZFP." + name) for v in (volume, again)]
         assert (runs[0] is None) == (runs[1] is None)
@@ -333,25 +338,25 @@ def test_hidden_values_cost_nothing():
     errors = []
     for filling in (np.nan, 1e30, 0):
         image = blank(make_image(np.where(hidden, np.float32(filling), values)), hidden)
-        volume = progiso.compress(image, 6)
+        volume = progiso.compress(image, rate=6)
         errors.append(np.abs(samples_of(progiso.decompress(volume)) - values)[~hidden].max())
         assert progiso.describe(volume)["range"] == [values[~hidden].min(), values[~hidden].max()]
-    whole = samples_of(progiso.decompress(progiso.compress(make_image(values), 6)))
+    whole = samples_of(progiso.decompress(progiso.compress(make_image(values), rate=6)))
     assert errors[0] == errors[1] == errors[2] <= 3 * np.abs(whole - values).max()
 
 
 def test_slabs_and_files_hide_alike(tmp_path):
     hidden = ball(SHAPE, 9)
     values = np.where(hidden, np.float32(np.inf), blobs(SHAPE, 3))
-    whole = progiso.compress(make_image(values), 5, mask_nan=True)
+    whole = progiso.compress(make_image(values), rate=5, mask_nan=True)
     values.tofile(tmp_path / f"hole_{SHAPE[2]}x{SHAPE[1]}x{SHAPE[0]}_float32.raw")
-    slabs = progiso.compress_slabs(iter(values), SHAPE[::-1], 5, mask_nan=True)
-    file = progiso.compress_file(next(tmp_path.iterdir()), 5, mask_nan=True)
+    slabs = progiso.compress_slabs(iter(values), SHAPE[::-1], rate=5, mask_nan=True)
+    file = progiso.compress_file(next(tmp_path.iterdir()), rate=5, mask_nan=True)
     for volume in (slabs, file):
         assert stream_of(volume) == stream_of(whole)
         assert np.array_equal(metadata(volume, "HiddenSamples"), metadata(whole, "HiddenSamples"))
     with pytest.raises(RuntimeError, match="infinite"):
-        progiso.compress_slabs(iter(values), SHAPE[::-1], 5)
+        progiso.compress_slabs(iter(values), SHAPE[::-1], rate=5)
 
 
 def test_a_piece_takes_its_part_of_the_mask():
@@ -465,7 +470,7 @@ def in_order(triangles):
 
 def test_gradients_at_the_border_of_a_hole():
     z, y, x = np.meshgrid(*[np.arange(n, dtype=np.float32) for n in SHAPE], indexing="ij")
-    image = progiso.compress(blank(make_image(z + 0.4 * y + 0.3 * x), speckles(SHAPE)), 32)
+    image = progiso.compress(blank(make_image(z + 0.4 * y + 0.3 * x), speckles(SHAPE)), rate=32)
     surface = progiso.contour(image, 20.3, gradients=True)
     gradients = vtk_to_numpy(surface.GetPointData().GetArray("Gradients"))
     assert len(gradients) > 100

@@ -26,7 +26,7 @@ Case = collections.namedtuple("Case", "image isovalue camera depth picture")
 def case(request):
     """A field, an isovalue, a camera, and depth and picture of one pass over the decoded volume."""
     field, isovalue = FIELDS[request.param]
-    image = progiso.compress(make_image(field()), 8)
+    image = progiso.compress(make_image(field()), rate=8)
     camera = orbit(reference_volume(image), 2, 5)
     scene = Scene(image, isovalue, camera, lit=True)
     depth = scene.depth()
@@ -115,7 +115,7 @@ def test_too_small_a_budget_is_an_error_that_names_the_least(case):
 def test_stream_in_several_buffers(case, bits, whole):
     """A stream longer than one buffer may be lies in several, wherever its blocks begin and end."""
     image, isovalue, camera, _, _ = case
-    image = progiso.compress(progiso.decompress(image), bits / 64)
+    image = progiso.compress(progiso.decompress(image), rate=bits / 64)
     expected = Scene(image, isovalue, camera).depth()
     stream = len(stream_of(image))
     scene = Scene(
@@ -220,7 +220,7 @@ def test_an_emptied_cache_decodes_again(case, settings):
 def test_cache_grows_and_shrinks_with_the_scene():
     """A complex view makes the cache grow; after some views that need little it is small again, and the images stay right."""
     values = noise((180, 180, 180), 3)
-    image = progiso.compress(make_image(values), 4)
+    image = progiso.compress(make_image(values), rate=4)
     camera = orbit(reference_volume(image), 1, 4)
     scene = Scene(image, values.max() - 0.01, camera, (400, 300), **CACHED)
 

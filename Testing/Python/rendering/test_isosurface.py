@@ -17,7 +17,7 @@ def image():
     """Distances from the centre: isosurfaces are spheres, the isovalue is their radius."""
     axis = np.arange(33) - 16.0
     distance = np.sqrt(axis[:, None, None] ** 2 + axis[:, None] ** 2 + axis**2).astype(np.float32)
-    return progiso.compress(make_image(distance), 16)
+    return progiso.compress(make_image(distance), rate=16)
 
 
 def colours(prop, *radii):
@@ -41,25 +41,29 @@ def colours(prop, *radii):
 
 
 def test_each_isovalue_has_its_colour_and_opacity(image):
-    prop = progiso.make_isosurface(image, [12, 6], [RED, GREEN], shade=False, opacity=[0.25, 1])
+    prop = progiso.make_isosurface(
+        image, [12, 6], color=[RED, GREEN], shade=False, opacity=[0.25, 1]
+    )
     # from outside in: beside both, through the outer sphere's front and back, on the inner through the outer
     through = 0.25 + 0.75 * 0.25
     assert colours(prop, 14, 9, 0) == [(0, 0, 0), (through, 0, 0), (0.25, 0.75, 0)]
 
 
 def test_one_colour_and_opacity_are_everyones(image):
-    prop = progiso.make_isosurface(image, (12, 6), BLUE, shade=False, opacity=0.5)
+    prop = progiso.make_isosurface(image, (12, 6), color=BLUE, shade=False, opacity=0.5)
     assert colours(prop, 9, 0) == [(0, 0, 0.75), (0, 0, 1 - 0.5**4)]
 
 
 def test_a_hidden_isovalue(image):
-    prop = progiso.make_isosurface(image, [12, 6], [RED, GREEN], shade=False, opacity=[0, 1])
+    prop = progiso.make_isosurface(image, [12, 6], color=[RED, GREEN], shade=False, opacity=[0, 1])
     assert colours(prop, 9, 0) == [(0, 0, 0), GREEN]
 
 
 def test_a_changed_isovalue_keeps_colour_and_opacity(image):
     """Also where it passes another's, and where it becomes equal to it on the way."""
-    prop = progiso.make_isosurface(image, [12, 6], [RED, GREEN], shade=False, opacity=[0.25, 1])
+    prop = progiso.make_isosurface(
+        image, [12, 6], color=[RED, GREEN], shade=False, opacity=[0.25, 1]
+    )
     values = prop.GetProperty().GetIsoSurfaceValues()
     values.SetValue(1, 12)
     values.SetValue(1, 15)
@@ -71,7 +75,7 @@ def test_a_changed_isovalue_keeps_colour_and_opacity(image):
 
 
 def test_one_more_isovalue_starts_the_colours_again(image):
-    prop = progiso.make_isosurface(image, [6, 3], [RED, GREEN], shade=False)
+    prop = progiso.make_isosurface(image, [6, 3], color=[RED, GREEN], shade=False)
     prop.GetProperty().GetIsoSurfaceValues().SetValue(2, 12)
     prop.GetProperty().GetIsoSurfaceValues().SetValue(0, 2)
     assert colours(prop, 0, 9) == [RED, RED]
@@ -81,7 +85,7 @@ def test_a_transfer_function_gives_the_colours(image):
     function = vtkColorTransferFunction()
     function.AddRGBPoint(0, *RED)
     function.AddRGBPoint(10, *GREEN)
-    prop = progiso.make_isosurface(image, 5, function, shade=False)
+    prop = progiso.make_isosurface(image, 5, color=function, shade=False)
     assert colours(prop, 0) == [(0.5, 0.5, 0)]
     prop.GetProperty().GetIsoSurfaceValues().SetValue(0, 10)
     assert colours(prop, 0) == [GREEN]
@@ -119,7 +123,9 @@ def test_errors_name_what_is_wrong(image, case):
 
 def test_windows_come_and_go(image):
     """A prop goes on in another window, where its blocks are decoded anew."""
-    prop = progiso.make_isosurface(image, [12, 6], [RED, GREEN], shade=False, opacity=[0.25, 1])
+    prop = progiso.make_isosurface(
+        image, [12, 6], color=[RED, GREEN], shade=False, opacity=[0.25, 1]
+    )
     prop.GetMapper().SetDecodeWholeVolume(False)
     through = 0.25 + 0.75 * 0.25
     for _ in range(3):
@@ -128,12 +134,12 @@ def test_windows_come_and_go(image):
 
 def test_render(image):
     """As the command line has it: colours by name, one or one for each isovalue."""
-    camera = progiso.view_camera(image, (1, 0, 0), (0, 0, 1))
+    camera = progiso.view_camera(image, direction=(1, 0, 0), view_up=(0, 0, 1))
     one, both = (
         progiso.render(
             image,
             isovalues,
-            (64, 64),
+            size=(64, 64),
             camera=camera,
             color=color,
             background="black",

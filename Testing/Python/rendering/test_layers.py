@@ -34,7 +34,7 @@ FIELDS = {
 @pytest.fixture(scope="module", params=FIELDS)
 def field(request):
     values, surfaces = FIELDS[request.param]
-    return progiso.compress(make_image(values()), 16), dict(sorted(surfaces.items()))
+    return progiso.compress(make_image(values()), rate=16), dict(sorted(surfaces.items()))
 
 
 def expected(stage, image, surfaces, end=np.inf, background=BACKGROUND, cropping=None):
@@ -133,7 +133,7 @@ def least_budget(image, surfaces, lit):
 @pytest.fixture(scope="module", params=[False, True], ids=["unlit", "lit"])
 def whole(request):
     """A volume larger than the smallest cache and buffer, whether it is lit, and picture and depth of one pass."""
-    image = progiso.compress(make_image(blobs((60, 64, 56), 3, waves=5)), 32)
+    image = progiso.compress(make_image(blobs((60, 64, 56), 3, waves=5)), rate=32)
     stage = Stage(True)
     show(stage, image, NESTED).GetProperty().SetShade(request.param)
     stage.renderer.AddActor(ball(20, centre=image.GetCenter()))

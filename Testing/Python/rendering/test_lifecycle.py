@@ -16,7 +16,7 @@ from helpers.scenes import CACHED
 
 @pytest.fixture(scope="module")
 def image():
-    return progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), 8)
+    return progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), rate=8)
 
 
 def decoded(stage):

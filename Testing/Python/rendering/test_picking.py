@@ -28,7 +28,7 @@ PIXELS = [(x, y) for x in range(3, SIZE[0], 13) for y in range(2, SIZE[1], 11)]
 @pytest.fixture(scope="module")
 def image():
     return progiso.compress(
-        make_image(blobs(SHAPE, 12, waves=2), origin=(3, -4, 5), extent_start=(2, -7, 4)), 16
+        make_image(blobs(SHAPE, 12, waves=2), origin=(3, -4, 5), extent_start=(2, -7, 4)), rate=16
     )
 
 

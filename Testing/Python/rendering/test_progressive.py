@@ -36,7 +36,7 @@ class Watched(Scene):
 
 @pytest.fixture(scope="module")
 def image():
-    return progiso.compress(make_image(blobs((60, 56, 64), 12, waves=6)), 8)
+    return progiso.compress(make_image(blobs((60, 56, 64), 12, waves=6)), rate=8)
 
 
 @pytest.fixture(scope="module")

@@ -75,7 +75,7 @@ def test_division_of_the_work(kind, shape, seed, rate, quantile, lit, division):
     """Speculation, memory budget, passes a render, buffers and decoding as a whole: not one bit of the picture."""
     values = random_field(kind, shape, seed)
     image, isovalue = (
-        progiso.compress(make_image(values), rate),
+        progiso.compress(make_image(values), rate=rate),
         float(np.quantile(values, quantile)),
     )
     camera = random_camera(shape, seed)
@@ -136,7 +136,7 @@ def padded(values, before, after):
 
 def lossless(plain):
     """Compress samples so that they stay what they are."""
-    image = progiso.compress(plain, 32)
+    image = progiso.compress(plain, rate=32)
     assert np.array_equal(reference_values(image), samples_of(plain))
     return image
 
@@ -226,7 +226,7 @@ def test_a_hole_shows(kind):
     field = cracks.closed_field(kind, (16, 18, 20), rng)
     hole = field.values.copy()
     hole[field.skin & (np.arange(20) > field.high[0])] = 1.0  # the whole side
-    image = progiso.compress(make_image(hole), 32)
+    image = progiso.compress(make_image(hole), rate=32)
     assert not field.is_closed(samples_of(progiso.decompress(image)))
     camera = cracks.camera_inside(field, rng)
     camera = Camera(camera.position, np.add(camera.position, (1, 0, 0)), view_angle=100)

@@ -29,7 +29,7 @@ ISOVALUE = 0.1
 
 @pytest.fixture(scope="module")
 def image():
-    return progiso.compress(make_image(blobs((40, 36, 44), 12)), 8)
+    return progiso.compress(make_image(blobs((40, 36, 44), 12)), rate=8)
 
 
 def colour(volume, rgb):
@@ -60,7 +60,7 @@ def piece_of(compressed, axis, first, last):
 def test_pieces_meet_without_a_seam(axis, cells, settings):
     """Two mappers with a part of a volume each make the picture of the whole; neither alone does."""
     values = make_image(blobs((40, 36, 44), 12), cells=cells, extent_start=(5, -3, 2))
-    compressed = progiso.compress(values, 4)
+    compressed = progiso.compress(values, rate=4)
     camera = orbit(reference_volume(compressed), 1, 8)
     end = values.GetDimensions()[axis] - 1
     ranges = (0, end), (0, 17), (17, end)
@@ -202,7 +202,7 @@ def test_light_falls_on_smooth_normals(spacing, direction):
     centre = matrix @ [23.5, 23.5, 23.5]
     radius = 18.0 * min(spacing)
     values = radius + 5 - np.linalg.norm(places - centre, axis=-1)
-    image = progiso.compress(make_image(values, spacing=spacing, direction=direction), 24)
+    image = progiso.compress(make_image(values, spacing=spacing, direction=direction), rate=24)
     camera = Camera(
         tuple(centre + [70, 20, 40]),
         tuple(centre),
@@ -325,7 +325,7 @@ def test_lit_like_meshes():
     image = make_image(blobs((40, 40, 40)))
     pictures = {}
     for like_meshes in (True, False):
-        camera = orbit(reference_volume(progiso.compress(image, 16)), 1, 4)
+        camera = orbit(reference_volume(progiso.compress(image, rate=16)), 1, 4)
         scene = Scene(
             image, 0.1, camera, (160, 120), lit=True, Rate=24.0, LitLikeMeshes=like_meshes
         )

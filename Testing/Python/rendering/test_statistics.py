@@ -13,7 +13,7 @@ from progiso.statistics import PASS_KEYS
 
 @pytest.fixture(scope="module")
 def scene():
-    image = progiso.compress(make_image(marschner_lobb(64)), 4)
+    image = progiso.compress(make_image(marschner_lobb(64)), rate=4)
     camera = orbit(reference_volume(image), 1, 4)
     scene = Scene(
         image, 0.5, camera, (200, 150), SpeculationLimit=4, DetailedStatistics=True, **CACHED
@@ -120,7 +120,7 @@ def test_memory_adds_up(scene):
 @pytest.mark.parametrize("shape", [(17, 18, 19), (100, 90, 110)])
 def test_memory_formula(shape, size, settings):
     """Beside payload and cache: three bytes for a block, forty for a pixel."""
-    image = progiso.compress(make_image(noise(shape)), 1)
+    image = progiso.compress(make_image(noise(shape)), rate=1)
     scene = Scene(image, 0.5, orbit(reference_volume(image), 1, 4), size, **settings)
     scene.render()
     check_memory(image, scene.statistics())
@@ -135,7 +135,7 @@ ALWAYS = {"control", "pass_statistics", "macrocells", "hits", "cache_values", "s
 
 @pytest.fixture(scope="module")
 def volume():
-    image = progiso.compress(make_image(noise(SHAPE)), 1)
+    image = progiso.compress(make_image(noise(SHAPE)), rate=1)
     return image, orbit(reference_volume(image), 1, 4)
 
 

@@ -27,7 +27,7 @@ MODES = {"whole": {}, "cached": CACHED}
 
 @pytest.fixture(scope="module")
 def image():
-    return progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), 8)
+    return progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), rate=8)
 
 
 @pytest.fixture(params=MODES)
@@ -237,7 +237,7 @@ from helpers.images import blobs, make_image
 from helpers.comparison import NESTED, OPAQUE, show
 import progiso
 
-image = progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), 8)
+image = progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), rate=8)
 pictures = []
 for surfaces, settings in ((OPAQUE, {{}}), (NESTED, CACHED), (OPAQUE, CACHED)):
     stage = Stage(True)
@@ -259,7 +259,7 @@ from helpers.comparison import OPAQUE, show
 import progiso
 
 stage = Stage(True)
-show(stage, progiso.compress(make_image(blobs((16, 16, 16), 12)), 8), OPAQUE)
+show(stage, progiso.compress(make_image(blobs((16, 16, 16), 12)), rate=8), OPAQUE)
 for _ in range(2):
     with vtk_messages() as messages:
         stage.window.Render()

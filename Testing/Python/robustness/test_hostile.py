@@ -70,7 +70,7 @@ def window():
 @pytest.fixture(scope="module", params=DAMAGE)
 def damaged(request):
     """A compressed volume with a damaged stream, and an isovalue in the middle of what libzfp decodes of it."""
-    image = progiso.compress(make_image(blobs(SHAPE, 3)), 8)
+    image = progiso.compress(make_image(blobs(SHAPE, 3)), rate=8)
     stream = vtk_to_numpy(image.GetFieldData().GetAbstractArray(PREFIX + "Stream"))
     DAMAGE[request.param](
         stream, np.random.default_rng(5)
@@ -127,7 +127,7 @@ def test_translucent(damaged):
 def test_colors(damaged):
     """The damaged volume colours another, and itself."""
     image, isovalue = damaged
-    good = progiso.compress(make_image(blobs(SHAPE, 4)), 8)
+    good = progiso.compress(make_image(blobs(SHAPE, 4)), rate=8)
     table = vtkLookupTable()
     for shown, value in ((good, 0.1), (image, isovalue)):
         looks = {"ColorInputData": image, "ColorLookupTable": table}
@@ -147,7 +147,7 @@ def infinite_block(sign):
 @pytest.mark.parametrize("sign", [-1, 1])
 def test_infinite_values_hide_no_other_surface(sign):
     """A macrocell with a block of infinite values: its other blocks are shown as before."""
-    image = progiso.compress(make_image(blobs((16, 16, 16), 5)), 32)
+    image = progiso.compress(make_image(blobs((16, 16, 16), 5)), rate=32)
     camera = Camera((40.0, 45.0, 50.0), (7.5, 7.5, 7.5), view_angle=25.0)
     before = Scene(image, 0.1, camera, SIZE).depth()
     metadata(image, "Stream")[:256] = infinite_block(sign)
@@ -162,7 +162,7 @@ def test_infinite_values_hide_no_other_surface(sign):
 @pytest.mark.parametrize("low, high", [(0, 1e-30), (-1e30, 1e30), (7, 8), (-1e300, 1e300)])
 def test_lying_range(low, high):
     """The range of values is told to users; nothing is left out by it."""
-    image = progiso.compress(make_image(noise((12, 12, 12))), 8)
+    image = progiso.compress(make_image(noise((12, 12, 12))), rate=8)
     expected = shows(image, [1.0], **CACHED)
     metadata(image, "Range")[:] = low, high
     assert shows(image, [1.0], **CACHED) == expected
@@ -187,7 +187,7 @@ GEOMETRIES = {
 @pytest.mark.parametrize("case", GEOMETRIES)
 def test_geometry(case):
     """One error, and nothing drawn, where rays would have no end."""
-    image = progiso.compress(make_image(noise((9, 9, 9))), 8)
+    image = progiso.compress(make_image(noise((9, 9, 9))), rate=8)
     scene = Scene(image, 1.0, CAMERA, SIZE, **CACHED)
     scene.renderer.GetActiveCamera().SetClippingRange(0.1, 500)
     scene.window.Render()
@@ -241,7 +241,7 @@ def folder(tmp_path_factory):
 def test_metadata(folder, case):
     """Whatever takes the volume says in one sentence what is wrong with it."""
     change, words = METADATA[case]
-    image = progiso.compress(make_image(noise((9, 9, 9))), 8)
+    image = progiso.compress(make_image(noise((9, 9, 9))), rate=8)
     change(image)
     file = folder / "hostile.vti"
     progiso.save(image, file)
@@ -270,7 +270,7 @@ def test_command_line(folder):
         METADATA["range reversed"],
         (GEOMETRIES["spacing zero"], "finite"),
     ):
-        image = progiso.compress(make_image(noise((9, 9, 9))), 8)
+        image = progiso.compress(make_image(noise((9, 9, 9))), rate=8)
         change(image)
         progiso.save(image, folder / "x.vti")
         command = [

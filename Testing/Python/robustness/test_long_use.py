@@ -23,7 +23,7 @@ MAPPERS, VOLUMES, FRAMES = 200, 50, 12
 
 @pytest.fixture(scope="module")
 def image():
-    return progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), 8)
+    return progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), rate=8)
 
 
 def test_mappers_come_and_go(image):
@@ -72,7 +72,7 @@ def test_mappers_come_and_go(image):
 
 def test_fifty_volumes(image):
     """In one scene, in rows: each shows as it does alone, and they share their shaders."""
-    size, small = (300, 160), progiso.compress(make_image(blobs((12, 14, 10), 5, waves=1)), 16)
+    size, small = (300, 160), progiso.compress(make_image(blobs((12, 14, 10), 5, waves=1)), rate=16)
     stage, alone = Stage(True, size), Stage(True, size)
     places = [np.array((12 * (i % 10), 16 * (i // 10), 0)) for i in range(VOLUMES)]
     matrices = [np.block([[np.eye(3), place[:, None]], [np.zeros(3), 1]]) for place in places]
@@ -155,7 +155,7 @@ from helpers.images import blobs, make_image
 from helpers.comparison import NESTED, OPAQUE, show
 from helpers.gl_objects import objects
 
-image = progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), 8)
+image = progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), rate=8)
 stages = [Stage(True), Stage(True)]
 stages[1].window.SetSharedRenderWindow(stages[0].window)
 for stage, surfaces in zip(stages, (OPAQUE, NESTED)):

@@ -47,7 +47,7 @@ def shown(build, tmp_path_factory):
 
     folder = tmp_path_factory.mktemp("parallel")
     image = make_image(150 + 80 * blobs((45, 38, 51)), origin=(-22, -20, -18))
-    compressed = progiso.compress(image, 5)
+    compressed = progiso.compress(image, rate=5)
     progiso.save(image, folder / "file-plain.vti")
     progiso.save(compressed, folder / "file-compressed.vti")
     progiso.save(compressed, folder / "file.zfp")

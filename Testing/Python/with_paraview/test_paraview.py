@@ -33,7 +33,7 @@ def shown(request, build, plugin, packages, tmp_path_factory):
     import progiso
 
     folder = tmp_path_factory.mktemp(request.param)
-    progiso.save(progiso.compress(make_image(marschner_lobb(64)), 8), folder / "volume.vti")
+    progiso.save(progiso.compress(make_image(marschner_lobb(64)), rate=8), folder / "volume.vti")
     script = SCRIPTS / "show.py"
     output = under_x(
         request.param, script, plugin, folder / "volume.vti", folder, python_path=[packages]

@@ -19,7 +19,7 @@ window = QtWidgets.QMainWindow()
 window.resize(400, 320)
 plotter = QtInteractor(window, auto_update=False)
 window.setCentralWidget(plotter)
-image = progiso.compress(make_image(blobs((60, 56, 64), 12, waves=6)), 8)
+image = progiso.compress(make_image(blobs((60, 56, 64), 12, waves=6)), rate=8)
 mapper = plotter.progiso.add_isosurface(image, isovalue=0.1, color="ivory").GetMapper()
 mapper.SetDecodeWholeVolume(False)  # passes also of a small volume,
 mapper.SetSpeculationLimit(1)  # many of them,
