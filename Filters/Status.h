@@ -38,16 +38,25 @@ public:
     return status;
   }
 
+  /// Work that the user stopped: neither success nor an error to show.
+  static Status Aborted()
+  {
+    Status status;
+    status.Failed = true;
+    return status;
+  }
+
   bool IsOk() const { return !this->Failed; }
+  bool IsAborted() const { return this->Failed && this->Message.empty(); }
   explicit operator bool() const { return this->IsOk(); }
 
-  /// Says what went wrong; empty after success.
+  /// Says what went wrong; empty after success, or if the work was stopped.
   const std::string& GetMessage() const { return this->Message; }
 
-  /// Returns an error with text before its message, or success as it is.
+  /// Returns an error with text before its message, anything else as it is.
   Status WithPrefix(const std::string& prefix) const
   {
-    return this->Failed ? Error(prefix, this->Message) : *this;
+    return this->Message.empty() ? *this : Error(prefix, this->Message);
   }
 
 private:

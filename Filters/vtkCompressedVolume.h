@@ -270,13 +270,6 @@ private:
   void operator=(const vtkCompressedVolume&) = delete;
 
   void Clear();
-  std::string Check(vtkImageData* image);
-  std::string ReadNumbers(vtkImageData* image);
-  std::string ReadStreamAndName(vtkImageData* image);
-  std::string ReadHidden(vtkImageData* image);
-  std::string ReadUnits(vtkImageData* image);
-  std::string CheckGeometry(vtkImageData* image);
-  void FindExtent(vtkImageData* image, const vtkTypeInt64 dims[3]);
   void CopyBlocks(const int first[3], const int count[3], vtkUnsignedCharArray* target) const;
 
   int BlockBits = 0;

@@ -2,6 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkCompressedVolumeBuilder.h"
 
+#include "Codec/ArrayMemory.h"
+#include "Codec/BlockGeometry.h"
+#include "Codec/BlockStream.h"
+#include "Codec/SampleEncoder.h"
+#include "Status.h"
+
 #include "vtkCellData.h"
 #include "vtkCompressedVolume.h"
 #include "vtkDataArray.h"
@@ -10,16 +16,14 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
-#include "vtkZFPBlocks.h"
-#include "vtkZFPMemory.h"
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 vtkStandardNewMacro(vtkCompressedVolumeBuilder);
 
 //------------------------------------------------------------------------------
+// The volume that is being built.
 struct vtkCompressedVolumeBuilder::Work
 {
   Work(const int dims[3], int blockBits)
@@ -33,16 +37,80 @@ struct vtkCompressedVolumeBuilder::Work
     return static_cast<vtkTypeInt64>(this->Dimensions[0]) * this->Dimensions[1];
   }
 
+  Status CheckSlab(vtkDataArray* samples, int component) const;
+  Status AddSlab(vtkDataArray* samples, int component, int threads);
+
   int Dimensions[3];
   int BlockBits;
   vtkNew<vtkUnsignedCharArray> Stream;
-  vtkZFPBlocks::Hidden Hidden;
-  vtkZFPBlocks::Summary Summary;
-  int Slices = 0; // done
+  SampleEncoder Encoder;
+  int Slices = 0; // encoded so far
   int ScalarType = VTK_VOID;
   int Component = 0;
   std::string ArrayName;
 };
+
+//------------------------------------------------------------------------------
+Status vtkCompressedVolumeBuilder::Work::CheckSlab(vtkDataArray* samples, int component) const
+{
+  const vtkTypeInt64 tuples = samples ? samples->GetNumberOfTuples() : 0;
+  const vtkTypeInt64 slices = tuples / this->SamplesPerSlice();
+  const vtkTypeInt64 left = this->Dimensions[2] - this->Slices;
+  if (tuples == 0 || tuples % this->SamplesPerSlice() != 0)
+  {
+    return Status::Error("The slab has ", tuples, " samples, which is not a multiple of the ",
+      this->Dimensions[0], " x ", this->Dimensions[1], " of a slice.");
+  }
+  if (slices > left)
+  {
+    return Status::Error(
+      "The slab has ", slices, " slices where ", left, " are left of ", this->Dimensions[2], ".");
+  }
+  if (slices % BlockSide != 0 && slices < left)
+  {
+    return Status::Error("The slab has ", slices,
+      " slices: only the last may have another number than a multiple of 4.");
+  }
+  if (component < 0 || component >= samples->GetNumberOfComponents())
+  {
+    return Status::Error("Component is ", component, ", but the slab has ",
+      samples->GetNumberOfComponents(), " component(s).");
+  }
+  if (this->Slices > 0 && samples->GetDataType() != this->ScalarType)
+  {
+    return Status::Error("The slab is of type ", samples->GetDataTypeAsString(),
+      ", but those before of ", vtkImageScalarTypeNameMacro(this->ScalarType), ".");
+  }
+  return {};
+}
+
+//------------------------------------------------------------------------------
+Status vtkCompressedVolumeBuilder::Work::AddSlab(vtkDataArray* samples, int component, int threads)
+{
+  if (Status status = this->CheckSlab(samples, component); !status)
+  {
+    return status;
+  }
+  if (this->Slices == 0)
+  {
+    this->ScalarType = samples->GetDataType();
+    this->Component = component;
+    this->ArrayName = samples->GetName() ? samples->GetName() : "";
+  }
+  const int end =
+    this->Slices + static_cast<int>(samples->GetNumberOfTuples() / this->SamplesPerSlice());
+  BlockStream blocks(this->Dimensions, this->BlockBits, this->Stream->GetPointer(0), threads);
+  this->Encoder.EncodeSlabs(blocks, this->Slices / BlockSide, BlocksAlong(end), samples, component,
+    [](double) { return true; });
+  const SampleSummary& summary = this->Encoder.GetSummary();
+  if (!summary.IsFinite())
+  {
+    return Status::Error(
+      "Slices ", this->Slices, " to ", end - 1, " have ", summary.CheckValues().GetMessage());
+  }
+  this->Slices = end;
+  return {};
+}
 
 //------------------------------------------------------------------------------
 vtkCompressedVolumeBuilder::vtkCompressedVolumeBuilder() = default;
@@ -65,11 +133,20 @@ int vtkCompressedVolumeBuilder::GetNumberOfSlices() const
 }
 
 //------------------------------------------------------------------------------
-bool vtkCompressedVolumeBuilder::Refuse(const std::string& reason)
+// Gives up the volume; returns false.
+bool vtkCompressedVolumeBuilder::SetError(const std::string& message)
 {
   this->Volume.reset();
-  this->ErrorMessage = reason;
+  this->ErrorMessage = message;
   return false;
+}
+
+//------------------------------------------------------------------------------
+// Says that nothing has been started, or why it was given up; returns false.
+bool vtkCompressedVolumeBuilder::SetErrorWithoutVolume()
+{
+  return this->SetError(
+    this->ErrorMessage.empty() ? "Nothing has been started." : this->ErrorMessage);
 }
 
 //------------------------------------------------------------------------------
@@ -77,68 +154,34 @@ bool vtkCompressedVolumeBuilder::Start(const int dims[3], double rate)
 {
   this->Volume.reset();
   const int blockBits = vtkCompressedVolume::BlockBitsForRate(rate);
-  std::ostringstream error;
+  Status status;
   if (blockBits == 0)
   {
-    error << "The rate is " << rate << " bits per sample: it must be in (0, 32].";
-    return this->Refuse(error.str());
+    status = Status::Error("The rate is ", rate, " bits per sample: it must be in (0, 32].");
   }
-  if (*std::min_element(dims, dims + 3) < 2)
+  else if (*std::min_element(dims, dims + 3) < 2)
   {
-    error << "Only volumes can be compressed: there are " << dims[0] << " x " << dims[1] << " x "
-          << dims[2] << " samples, at least 2 along each axis are needed.";
-    return this->Refuse(error.str());
+    status = Status::Error("Only volumes can be compressed: there are ", dims[0], " x ", dims[1],
+      " x ", dims[2], " samples, at least 2 along each axis are needed.");
   }
-  if (!std::isfinite(this->Offset) || !std::isfinite(this->Scale) || !(this->Scale > 0.0))
+  else if (!std::isfinite(this->Offset) || !std::isfinite(this->Scale) || !(this->Scale > 0.0))
   {
-    error << "The stream's units are an offset of " << this->Offset << " and a scale of "
-          << this->Scale << ": both must be finite, and the latter above 0.";
-    return this->Refuse(error.str());
+    status = Status::Error("The stream's units are an offset of ", this->Offset, " and a scale of ",
+      this->Scale, ": both must be finite, and the latter above 0.");
+  }
+  if (!status)
+  {
+    return this->SetError(status.GetMessage());
   }
   this->Volume = std::make_unique<Work>(dims, blockBits);
   const vtkTypeInt64 bytes = vtkCompressedVolume::StreamBytesFor(dims, blockBits);
-  if (!vtkZFPMemory::Allocate(this->Volume->Stream.Get(), bytes))
+  status = AllocateArray(this->Volume->Stream.Get(), bytes, "the stream", dims);
+  if (!status)
   {
-    return this->Refuse("There is " + vtkZFPMemory::Objection("the stream", dims, bytes) + ".");
+    return this->SetError("There is " + status.GetMessage() + ".");
   }
   this->ErrorMessage.clear();
   return true;
-}
-
-//------------------------------------------------------------------------------
-std::string vtkCompressedVolumeBuilder::CheckSlab(vtkDataArray* samples, int component) const
-{
-  const Work& volume = *this->Volume;
-  const vtkTypeInt64 tuples = samples ? samples->GetNumberOfTuples() : 0;
-  const vtkTypeInt64 slices = tuples / volume.SamplesPerSlice();
-  const vtkTypeInt64 left = volume.Dimensions[2] - volume.Slices;
-  std::ostringstream error;
-  if (tuples == 0 || tuples % volume.SamplesPerSlice() != 0)
-  {
-    error << "The slab has " << tuples << " samples, which is not a multiple of the "
-          << volume.Dimensions[0] << " x " << volume.Dimensions[1] << " of a slice.";
-  }
-  else if (slices > left)
-  {
-    error << "The slab has " << slices << " slices where " << left << " are left of "
-          << volume.Dimensions[2] << ".";
-  }
-  else if (slices % 4 != 0 && slices < left)
-  {
-    error << "The slab has " << slices << " slices: only the last may have another number than a "
-          << "multiple of 4.";
-  }
-  else if (component < 0 || component >= samples->GetNumberOfComponents())
-  {
-    error << "Component is " << component << ", but the slab has "
-          << samples->GetNumberOfComponents() << " component(s).";
-  }
-  else if (volume.Slices > 0 && samples->GetDataType() != volume.ScalarType)
-  {
-    error << "The slab is of type " << samples->GetDataTypeAsString() << ", but those before of "
-          << vtkImageScalarTypeNameMacro(volume.ScalarType) << ".";
-  }
-  return error.str();
 }
 
 //------------------------------------------------------------------------------
@@ -146,37 +189,15 @@ bool vtkCompressedVolumeBuilder::AddSlab(vtkDataArray* samples, int component)
 {
   if (!this->Volume)
   {
-    return this->Refuse(
-      this->ErrorMessage.empty() ? "Nothing has been started." : this->ErrorMessage);
+    return this->SetErrorWithoutVolume();
   }
-  std::string error = this->CheckSlab(samples, component);
-  if (!error.empty())
+  this->Volume->Encoder.Hidden.HideNonFinite = this->MaskNonFinite;
+  this->Volume->Encoder.Units = { this->Offset, this->Scale };
+  const Status status = this->Volume->AddSlab(samples, component, this->NumberOfThreads);
+  if (!status)
   {
-    return this->Refuse(error);
+    return this->SetError(status.GetMessage());
   }
-  Work& volume = *this->Volume;
-  const int slices = static_cast<int>(samples->GetNumberOfTuples() / volume.SamplesPerSlice());
-  if (volume.Slices == 0)
-  {
-    volume.ScalarType = samples->GetDataType();
-    volume.Component = component;
-    volume.ArrayName = samples->GetName() ? samples->GetName() : "";
-  }
-  vtkZFPBlocks blocks(
-    volume.Dimensions, volume.BlockBits, volume.Stream->GetPointer(0), this->NumberOfThreads);
-  const int first = volume.Slices / 4;
-  volume.Hidden.NotFinite = this->MaskNonFinite;
-  const vtkZFPBlocks::Units units{ this->Offset, this->Scale };
-  blocks.Encode(samples, component, first, (volume.Slices + slices + 3) / 4, units, volume.Hidden,
-    volume.Summary, [](double) { return true; });
-  if (!volume.Summary.IsFinite())
-  {
-    std::ostringstream message;
-    message << "Slices " << volume.Slices << " to " << volume.Slices + slices - 1 << " have "
-            << volume.Summary.GetObjection();
-    return this->Refuse(message.str());
-  }
-  volume.Slices += slices;
   this->ErrorMessage.clear();
   return true;
 }
@@ -184,23 +205,22 @@ bool vtkCompressedVolumeBuilder::AddSlab(vtkDataArray* samples, int component)
 //------------------------------------------------------------------------------
 bool vtkCompressedVolumeBuilder::Finish(vtkImageData* image)
 {
-  const int given = this->GetNumberOfSlices();
-  if (!this->Volume || given < this->Volume->Dimensions[2])
+  if (!this->Volume)
   {
-    std::ostringstream error;
-    this->Volume
-      ? error << "Only " << given << " slices of " << this->Volume->Dimensions[2]
-              << " have been added."
-      : error << (this->ErrorMessage.empty() ? "Nothing has been started." : this->ErrorMessage);
-    return this->Refuse(error.str());
+    return this->SetErrorWithoutVolume();
   }
-  const std::string objection = this->Volume->Summary.GetObjection();
-  if (!objection.empty())
+  if (this->Volume->Slices < this->Volume->Dimensions[2])
   {
-    return this->Refuse("The volume has " + objection);
+    return this->SetError("Only " + std::to_string(this->Volume->Slices) + " slices of " +
+      std::to_string(this->Volume->Dimensions[2]) + " have been added.");
+  }
+  const SampleSummary summary = this->Volume->Encoder.GetSummary();
+  if (Status status = summary.CheckValues(); !status)
+  {
+    return this->SetError("The volume has " + status.GetMessage());
   }
   const std::unique_ptr<Work> work = std::move(this->Volume);
-  std::string name = this->ArrayName.empty() ? work->ArrayName : this->ArrayName;
+  const std::string name = this->ArrayName.empty() ? work->ArrayName : this->ArrayName;
   image->SetDimensions(work->Dimensions);
   image->GetPointData()->Initialize();
   image->GetCellData()->Initialize();
@@ -209,8 +229,8 @@ bool vtkCompressedVolumeBuilder::Finish(vtkImageData* image)
   volume->SetDimensions(work->Dimensions);
   volume->SetOffset(this->Offset);
   volume->SetScale(this->Scale);
-  volume->SetStoredRange(work->Summary.GetRange()[0], work->Summary.GetRange()[1]);
-  volume->SetHiddenSamples(work->Hidden.Mask);
+  volume->SetStoredRange(summary.GetRange()[0], summary.GetRange()[1]);
+  volume->SetHiddenSamples(work->Encoder.GetMask());
   volume->SetScalarType(work->ScalarType);
   volume->SetArrayName(name.empty() ? "scalars" : name);
   volume->SetComponent(work->Component);

@@ -117,8 +117,8 @@ private:
   void operator=(const vtkCompressedVolumeBuilder&) = delete;
 
   struct Work;
-  bool Refuse(const std::string& reason);
-  std::string CheckSlab(vtkDataArray* samples, int component) const;
+  bool SetError(const std::string& message);
+  bool SetErrorWithoutVolume();
 
   std::string ArrayName;
   double Offset = 0.0;
@@ -126,7 +126,7 @@ private:
   bool MaskNonFinite = false;
   int NumberOfThreads = 0;
   std::string ErrorMessage;
-  std::unique_ptr<Work> Volume; // what is being built; null before Start(), and after a refusal
+  std::unique_ptr<Work> Volume; // null before Start() and after an error
 };
 
 #endif

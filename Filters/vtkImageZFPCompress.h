@@ -47,8 +47,6 @@
 #include "vtkImageAlgorithm.h"
 #include "vtkProgIsoFiltersModule.h" // for export macro
 
-#include <string> // for error messages
-
 class vtkDataArray;
 
 class VTKPROGISOFILTERS_EXPORT vtkImageZFPCompress : public vtkImageAlgorithm
@@ -120,11 +118,7 @@ private:
   vtkImageZFPCompress(const vtkImageZFPCompress&) = delete;
   void operator=(const vtkImageZFPCompress&) = delete;
 
-  vtkDataArray* FindArray(
-    vtkInformationVector** inputVector, vtkImageData* input, int& association);
-  struct Part;
-  std::string Check(vtkImageData* input, vtkDataArray* array, Part& part);
-  bool Compress(vtkImageData* input, vtkDataArray* array, const Part& part, vtkImageData* output);
+  class Work;
 
   double Rate = 8.0;
   int Component = 0;

@@ -2,6 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkImageZFPDecompress.h"
 
+#include "Codec/ArrayMemory.h"
+#include "Codec/BlockGeometry.h"
+#include "Codec/BlockStream.h"
+#include "Pieces/PipelineRequests.h"
+#include "Status.h"
+
 #include "vtkCellData.h"
 #include "vtkCompressedVolume.h"
 #include "vtkDoubleArray.h"
@@ -14,20 +20,18 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
-#include "vtkZFPBlocks.h"
-#include "vtkZFPMemory.h"
 
 #include <algorithm>
 #include <limits>
+#include <vector>
 
 vtkStandardNewMacro(vtkImageZFPDecompress);
 
 namespace
 {
 //------------------------------------------------------------------------------
-// Calls body(number of the element) for all that a mask hides, of `size` elements per axis.
+// Calls body(index of the element) for all that a mask hides, of `size` elements per axis.
 template <typename Body>
 void ForEachHidden(
   const vtkBlockMask& mask, const int blocks[3], const vtkIdType size[3], Body body)
@@ -39,11 +43,11 @@ void ForEachHidden(
     const vtkTypeUInt64 next = run + 1 < runs.size() ? runs[run + 1].First : end;
     for (vtkTypeUInt64 block = runs[run].First; runs[run].Bits && block < next; ++block)
     {
-      for (int i = 0; i < 64; ++i)
+      for (int i = 0; i < BlockSamples; ++i)
       {
-        const vtkIdType x = 4 * (block % blocks[0]) + i % 4;
-        const vtkIdType y = 4 * (block / blocks[0] % blocks[1]) + i / 4 % 4;
-        const vtkIdType z = 4 * (block / blocks[0] / blocks[1]) + i / 16;
+        const vtkIdType x = BlockSide * (block % blocks[0]) + i % BlockSide;
+        const vtkIdType y = BlockSide * (block / blocks[0] % blocks[1]) + i / BlockSide % BlockSide;
+        const vtkIdType z = BlockSide * (block / blocks[0] / blocks[1]) + i / BlockSlice;
         if ((runs[run].Bits >> i & 1) && x < size[0] && y < size[1] && z < size[2])
         {
           body(x + size[0] * (y + size[1] * z));
@@ -54,9 +58,9 @@ void ForEachHidden(
 }
 
 //------------------------------------------------------------------------------
-// The input's ghost array comes along with its structure: only of as many points, or cells, may it
-// be added to.
-void KeepGhosts(vtkDataSetAttributes* attributes, vtkIdType number)
+// Removes a ghost array that came along with the input's structure if it does not fit the output's
+// number of points, or cells.
+void RemoveUnfitGhosts(vtkDataSetAttributes* attributes, vtkIdType number)
 {
   const char* const name = vtkDataSetAttributes::GhostArrayName();
   vtkAbstractArray* const ghosts = attributes->GetAbstractArray(name);
@@ -67,53 +71,121 @@ void KeepGhosts(vtkDataSetAttributes* attributes, vtkIdType number)
 }
 
 //------------------------------------------------------------------------------
-// Hidden samples become NaN, and the ghost arrays tell of them and of hidden cells.
-void Hide(vtkCompressedVolume* volume, vtkDataArray* samples, vtkImageData* output)
+// Gives the output the extent of the stream, in which the samples around a piece are ghosts.
+void SetOutputExtent(vtkCompressedVolume* volume, int piece[6], vtkImageData* output)
 {
-  int blocks[3];
-  volume->GetBlocks(blocks);
-  const int* dims = volume->GetDimensions();
-  const bool cellData = volume->GetAssociation() == vtkCompressedVolume::CellData;
-  if (!volume->GetHiddenSamples().IsEmpty())
+  output->SetExtent(volume->GetExtent());
+  RemoveUnfitGhosts(output->GetPointData(), output->GetNumberOfPoints());
+  RemoveUnfitGhosts(output->GetCellData(), output->GetNumberOfCells());
+  if (!std::equal(piece, piece + 6, volume->GetExtent()))
   {
-    vtkUnsignedCharArray* ghosts =
-      cellData ? output->AllocateCellGhostArray() : output->AllocatePointGhostArray();
-    unsigned char flag = vtkDataSetAttributes::HIDDENPOINT;
-    if (cellData)
-    {
-      flag = vtkDataSetAttributes::HIDDENCELL;
-    }
-    const vtkIdType size[3] = { dims[0], dims[1], dims[2] };
-    ForEachHidden(volume->GetHiddenSamples(), blocks, size,
-      [&](vtkIdType sample)
-      {
-        samples->SetComponent(sample, 0, std::numeric_limits<double>::quiet_NaN());
-        ghosts->SetValue(sample, ghosts->GetValue(sample) | flag);
-      });
-  }
-  if (!volume->GetHiddenCells().IsEmpty())
-  {
-    vtkUnsignedCharArray* ghosts = output->AllocateCellGhostArray();
-    const vtkIdType size[3] = { dims[0] - 1, dims[1] - 1, dims[2] - 1 };
-    ForEachHidden(volume->GetHiddenCells(), blocks, size,
-      [&](vtkIdType cell)
-      { ghosts->SetValue(cell, ghosts->GetValue(cell) | vtkDataSetAttributes::HIDDENCELL); });
+    output->GenerateGhostArray(piece);
   }
 }
 
 //------------------------------------------------------------------------------
-// What the samples are that a stream has in units of its own.
-vtkSmartPointer<vtkDataArray> InSamplesUnits(vtkCompressedVolume* volume, vtkFloatArray* stored)
+// Makes hidden samples NaN, and flags them in the output's ghost array.
+void HideSamples(vtkCompressedVolume* volume, vtkDataArray* samples, vtkImageData* output)
 {
-  vtkNew<vtkDoubleArray> samples;
-  samples->SetName(stored->GetName());
-  if (!vtkZFPMemory::Allocate(samples.Get(), stored->GetNumberOfValues()))
+  const bool cellData = volume->GetAssociation() == vtkCompressedVolume::CellData;
+  vtkUnsignedCharArray* ghosts =
+    cellData ? output->AllocateCellGhostArray() : output->AllocatePointGhostArray();
+  const unsigned char flag = cellData ? static_cast<int>(vtkDataSetAttributes::HIDDENCELL)
+                                      : static_cast<int>(vtkDataSetAttributes::HIDDENPOINT);
+  int blocks[3];
+  volume->GetBlocks(blocks);
+  const int* dims = volume->GetDimensions();
+  const vtkIdType size[3] = { dims[0], dims[1], dims[2] };
+  ForEachHidden(volume->GetHiddenSamples(), blocks, size,
+    [&](vtkIdType sample)
+    {
+      samples->SetComponent(sample, 0, std::numeric_limits<double>::quiet_NaN());
+      ghosts->SetValue(sample, ghosts->GetValue(sample) | flag);
+    });
+}
+
+//------------------------------------------------------------------------------
+void HideCells(vtkCompressedVolume* volume, vtkImageData* output)
+{
+  vtkUnsignedCharArray* ghosts = output->AllocateCellGhostArray();
+  int blocks[3];
+  volume->GetBlocks(blocks);
+  const int* dims = volume->GetDimensions();
+  const vtkIdType size[3] = { dims[0] - 1, dims[1] - 1, dims[2] - 1 };
+  ForEachHidden(volume->GetHiddenCells(), blocks, size,
+    [&](vtkIdType cell)
+    { ghosts->SetValue(cell, ghosts->GetValue(cell) | vtkDataSetAttributes::HIDDENCELL); });
+}
+
+//------------------------------------------------------------------------------
+void SetOutputSamples(vtkCompressedVolume* volume, vtkDataArray* samples, vtkImageData* output)
+{
+  vtkDataSetAttributes* attributes = output->GetPointData();
+  if (volume->GetAssociation() == vtkCompressedVolume::CellData)
   {
-    return nullptr;
+    attributes = output->GetCellData();
+  }
+  attributes->SetScalars(samples);
+  if (!volume->GetHiddenSamples().IsEmpty())
+  {
+    HideSamples(volume, samples, output);
+  }
+  if (!volume->GetHiddenCells().IsEmpty())
+  {
+    HideCells(volume, output);
+  }
+}
+
+//------------------------------------------------------------------------------
+vtkIdType CountSamples(const int dims[3])
+{
+  return static_cast<vtkIdType>(dims[0]) * dims[1] * dims[2];
+}
+
+//------------------------------------------------------------------------------
+// Decodes a stream's values, in its own units.
+Status DecodeStored(
+  vtkCompressedVolume* volume, int threads, const ProgressCallback& progress, vtkFloatArray* stored)
+{
+  const int* dims = volume->GetDimensions();
+  if (Status status = AllocateArray(stored, CountSamples(dims), "the values", dims); !status)
+  {
+    return status;
+  }
+  const auto stream = BlockStream::Align(volume->GetStream());
+  const BlockStream blocks(dims, volume->GetBlockBits(), stream->GetPointer(0), threads);
+  return blocks.Decode(stored->GetPointer(0), progress) ? Status() : Status::Aborted();
+}
+
+//------------------------------------------------------------------------------
+// Computes samples from values in units of the stream.
+Status ConvertStored(vtkCompressedVolume* volume, vtkFloatArray* stored, vtkDoubleArray* samples)
+{
+  const int* dims = volume->GetDimensions();
+  if (Status status = AllocateArray(samples, CountSamples(dims), "the values", dims); !status)
+  {
+    return status;
   }
   std::transform(stored->GetPointer(0), stored->GetPointer(0) + stored->GetNumberOfValues(),
     samples->GetPointer(0), [volume](float value) { return volume->ToSample(value); });
-  return samples;
+  return {};
+}
+
+//------------------------------------------------------------------------------
+Status DecodeSamples(vtkCompressedVolume* volume, int threads, const ProgressCallback& progress,
+  vtkSmartPointer<vtkDataArray>& samples)
+{
+  const auto stored = vtkSmartPointer<vtkFloatArray>::New();
+  samples = stored;
+  Status status = DecodeStored(volume, threads, progress, stored);
+  if (status && volume->HasUnits())
+  {
+    const auto converted = vtkSmartPointer<vtkDoubleArray>::New();
+    samples = converted;
+    status = ConvertStored(volume, stored, converted);
+  }
+  samples->SetName(volume->GetArrayName().c_str());
+  return status;
 }
 }
 
@@ -121,24 +193,17 @@ vtkSmartPointer<vtkDataArray> InSamplesUnits(vtkCompressedVolume* volume, vtkFlo
 int vtkImageZFPDecompress::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkInformation* in = inputVector[0]->GetInformationObject(0);
   vtkInformation* out = outputVector->GetInformationObject(0);
-  out->CopyEntry(in, vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
-  out->CopyEntry(in, vtkDataObject::SPACING());
-  out->CopyEntry(in, vtkDataObject::ORIGIN());
-  out->CopyEntry(in, vtkDataObject::DIRECTION());
+  PipelineRequests::CopyGeometry(inputVector[0]->GetInformationObject(0), out);
   vtkDataObject::SetPointDataActiveScalarInfo(out, VTK_FLOAT, 1);
   return 1;
 }
 
 //------------------------------------------------------------------------------
-// Blocks lie across any cut through the image: the whole is taken and made.
 int vtkImageZFPDecompress::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
-  vtkInformation* in = inputVector[0]->GetInformationObject(0);
-  in->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(),
-    in->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()), 6);
+  PipelineRequests::RequestWholeExtent(inputVector[0]->GetInformationObject(0));
   return 1;
 }
 
@@ -153,7 +218,6 @@ int vtkImageZFPDecompress::RequestData(
   output->CopyStructure(input);
   output->GetFieldData()->PassData(input->GetFieldData());
   vtkCompressedVolume::Remove(output);
-
   if (vtkCompressedVolume::IsEmptyPiece(inputVector[0]->GetInformationObject(0)))
   {
     return 1;
@@ -163,57 +227,24 @@ int vtkImageZFPDecompress::RequestData(
   {
     vtkErrorMacro("The input is " << volume->GetErrorMessage() << ".");
     this->SetErrorCode(vtkErrorCode::UserError);
-    return 1; // the message is out already: the executive need not add its own
+    return 1; // the executive need not add a message of its own
   }
 
-  int own[6];
-  input->GetExtent(own);
-  volume->Crop(own);
-  output->SetExtent(volume->GetExtent());
-  KeepGhosts(output->GetPointData(), output->GetNumberOfPoints());
-  KeepGhosts(output->GetCellData(), output->GetNumberOfCells());
-  if (!volume->Covers(input))
+  int piece[6];
+  input->GetExtent(piece);
+  volume->Crop(piece);
+  SetOutputExtent(volume, piece, output);
+  vtkSmartPointer<vtkDataArray> samples;
+  const Status status = DecodeSamples(volume, this->NumberOfThreads, ProgressOf(this), samples);
+  if (status)
   {
-    output->GenerateGhostArray(own); // the samples around a piece
+    SetOutputSamples(volume, samples, output);
   }
-  int dims[3];
-  volume->GetDimensions(dims);
-  vtkNew<vtkFloatArray> stored;
-  stored->SetName(volume->GetArrayName().c_str());
-  const vtkTypeInt64 count = static_cast<vtkTypeInt64>(dims[0]) * dims[1] * dims[2];
-  const auto lacksMemory = [&](vtkTypeInt64 bytes)
+  else if (!status.IsAborted())
   {
-    vtkErrorMacro("There is " << vtkZFPMemory::Objection("the values", dims, bytes) << ".");
+    vtkErrorMacro("There is " << status.GetMessage() << ".");
     this->SetErrorCode(vtkErrorCode::UserError);
-    return 1;
-  };
-  if (!vtkZFPMemory::Allocate(stored.Get(), count))
-  {
-    return lacksMemory(4 * count);
   }
-
-  const auto stream = vtkZFPBlocks::Align(volume->GetStream());
-  vtkZFPBlocks blocks(dims, volume->GetBlockBits(), stream->GetPointer(0), this->NumberOfThreads);
-  if (!blocks.Decode(stored->GetPointer(0), vtkZFPBlocks::ReportOf(this)))
-  {
-    return 1;
-  }
-  vtkSmartPointer<vtkDataArray> samples = stored;
-  if (volume->HasUnits())
-  {
-    samples = InSamplesUnits(volume, stored);
-    if (!samples)
-    {
-      return lacksMemory(8 * count);
-    }
-  }
-  vtkDataSetAttributes* attributes = output->GetPointData();
-  if (volume->GetAssociation() == vtkCompressedVolume::CellData)
-  {
-    attributes = output->GetCellData();
-  }
-  attributes->SetScalars(samples);
-  Hide(volume, samples, output);
   return 1;
 }
 

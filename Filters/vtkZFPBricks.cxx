@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkZFPBricks.h"
 
-#include "vtkZFPBlocks.h"
+#include "Codec/BlockStream.h"
 
 #include <algorithm>
 #include <limits>
@@ -69,7 +69,7 @@ vtkIdType vtkZFPBricks::FindOwner(const int sample[3]) const
 
 //------------------------------------------------------------------------------
 void vtkZFPBricks::Decode(
-  const vtkZFPBlocks& blocks, vtkIdType brick, int halo, Samples& samples) const
+  const BlockStream& blocks, vtkIdType brick, int halo, Samples& samples) const
 {
   const Box box = this->GetBox(brick);
   int first[3];

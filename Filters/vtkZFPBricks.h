@@ -15,7 +15,7 @@
 
 #include <vector> // for samples
 
-class vtkZFPBlocks;
+class BlockStream;
 
 class vtkZFPBricks
 {
@@ -89,7 +89,7 @@ public:
   /**
    * Decode a brick, and the samples up to `halo` around it where the volume has them.
    */
-  void Decode(const vtkZFPBlocks& blocks, vtkIdType brick, int halo, Samples& samples) const;
+  void Decode(const BlockStream& blocks, vtkIdType brick, int halo, Samples& samples) const;
 
   /**
    * The range of a decoded brick's own samples.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkZFPContour.h"
 
+#include "Codec/BlockStream.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCompressedVolume.h"
@@ -20,7 +21,6 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTypeInt64Array.h"
 #include "vtkUnsignedCharArray.h"
-#include "vtkZFPBlocks.h"
 #include "vtkZFPBrickContour.h"
 #include "vtkZFPBricks.h"
 
@@ -148,7 +148,7 @@ class vtkZFPContour::Work
 public:
   Work(vtkZFPContour* self, vtkCompressedVolume* volume, const int extentStart[3])
     : Self(self)
-    , Stream(vtkZFPBlocks::Align(volume->GetStream()))
+    , Stream(BlockStream::Align(volume->GetStream()))
     , Blocks(volume->GetDimensions(), volume->GetBlockBits(), this->Stream->GetPointer(0), 1)
     , Bricks(volume->GetDimensions(), self->BrickSize)
     , Contour(this->Bricks, extentStart)
@@ -196,7 +196,7 @@ private:
 
   vtkZFPContour* Self;
   vtkSmartPointer<vtkUnsignedCharArray> Stream;
-  vtkZFPBlocks Blocks;
+  BlockStream Blocks;
   vtkZFPBricks Bricks;
   vtkZFPBrickContour Contour;
   vtkBlockMask Hidden;

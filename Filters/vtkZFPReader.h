@@ -24,9 +24,7 @@
 #include "vtkImageAlgorithm.h"
 #include "vtkProgIsoFiltersModule.h" // for export macro
 
-#include <string> // for error messages
-
-class vtkImageData;
+#include <string> // for the last error
 
 class VTKPROGISOFILTERS_EXPORT vtkZFPReader : public vtkImageAlgorithm
 {
@@ -97,13 +95,7 @@ private:
   vtkZFPReader(const vtkZFPReader&) = delete;
   void operator=(const vtkZFPReader&) = delete;
 
-  struct Layout;
-  static std::string FindLayout(
-    const char* fileName, const int dims[3], double rate, Layout& layout);
-  static std::string CheckLayout(const Layout& layout);
-  std::string Load(const Layout& layout, vtkImageData* output);
-  bool FindRange(const Layout& layout, void* words, double range[2], std::string& error);
-  void Report(const std::string& error);
+  void ShowError(const std::string& error);
 
   char* FileName = nullptr;
   char* ArrayName = nullptr;
@@ -111,7 +103,7 @@ private:
   double Rate = 8.0;
   double DataSpacing[3] = { 1.0, 1.0, 1.0 };
   double DataOrigin[3] = { 0.0, 0.0, 0.0 };
-  std::string ReportedError;
+  std::string ShownError;
 };
 
 #endif

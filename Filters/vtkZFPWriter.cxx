@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkZFPWriter.h"
 
+#include "Codec/BitCopy.h"
+#include "Format/ZFPHeader.h"
+
 #include "vtkCompressedVolume.h"
 #include "vtkErrorCode.h"
 #include "vtkImageData.h"
@@ -10,10 +13,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkUnsignedCharArray.h"
 
-#include <zfp.h>
-
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <vector>
@@ -23,27 +23,7 @@ vtkStandardNewMacro(vtkZFPWriter);
 namespace
 {
 //------------------------------------------------------------------------------
-// zfp's header for a volume, in whole words; returns its length in bits, 0 when it has no room for
-// the dimensions.
-size_t MakeHeader(vtkCompressedVolume* volume, vtkTypeUInt64 words[3])
-{
-  int dims[3];
-  volume->GetDimensions(dims);
-  const int bits = volume->GetBlockBits();
-  bitstream* stream = stream_open(words, 3 * sizeof(vtkTypeUInt64));
-  zfp_stream* zfp = zfp_stream_open(stream);
-  zfp_field* field = zfp_field_3d(nullptr, zfp_type_float, dims[0], dims[1], dims[2]);
-  zfp_stream_set_params(zfp, bits, bits, ZFP_MAX_PREC, ZFP_MIN_EXP);
-  const size_t length = zfp_write_header(zfp, field, ZFP_HEADER_FULL);
-  stream_flush(stream);
-  zfp_field_free(field);
-  zfp_stream_close(zfp);
-  stream_close(stream);
-  return length;
-}
-
-//------------------------------------------------------------------------------
-// Half a file is of no use; but a device or pipe is not ours to remove.
+// Removes a file that could not be completed, unless it is a device or a pipe.
 void RemoveFile(const char* name)
 {
   std::error_code ignored;
@@ -54,64 +34,45 @@ void RemoveFile(const char* name)
 }
 
 //------------------------------------------------------------------------------
-// Writes bits to a file, a word at a time: first a header, then the stream right behind its last
-// bit.
+// Writes one stream of bits to a file right behind the last bit of another.
 class BitWriter
 {
 public:
   explicit BitWriter(std::ostream& file)
     : File(file)
+    , Words(BufferWords)
   {
   }
 
-  // `bits` bits in words that are zero behind them
-  void Write(const unsigned char* bytes, vtkTypeInt64 bits)
+  void Append(const void* stream, vtkTypeInt64 bits)
   {
-    constexpr vtkTypeInt64 chunk = 1 << 16;
-    std::vector<vtkTypeUInt64> words;
-    for (vtkTypeInt64 done = 0; done < bits; done += 64 * chunk)
+    for (vtkTypeInt64 done = 0; done < bits;)
     {
-      const vtkTypeInt64 left = bits - done;
-      words.resize(std::min(chunk, (left + 63) / 64));
-      memcpy(words.data(), bytes + done / 8, words.size() * sizeof(vtkTypeUInt64));
-      this->Append(words, std::min(left, 64 * chunk));
+      const vtkTypeInt64 taken = std::min(bits - done, 64 * BufferWords - this->PendingBits);
+      CopyBits(stream, done, this->Words.data(), this->PendingBits, taken);
+      this->PendingBits += taken;
+      done += taken;
+      if (this->PendingBits == 64 * BufferWords)
+      {
+        this->Flush();
+      }
     }
   }
 
-  void Finish()
+  // Writes what is pending, in whole words.
+  void Flush()
   {
-    if (this->Bits)
-    {
-      this->File.write(reinterpret_cast<const char*>(&this->Pending), sizeof(this->Pending));
-    }
+    this->File.write(
+      reinterpret_cast<const char*>(this->Words.data()), (this->PendingBits + 63) / 64 * 8);
+    this->PendingBits = 0;
   }
 
 private:
-  void Append(std::vector<vtkTypeUInt64>& words, vtkTypeInt64 bits)
-  {
-    if (this->Bits)
-    {
-      for (vtkTypeUInt64& word : words)
-      {
-        const vtkTypeUInt64 next = word >> (64 - this->Bits);
-        word = this->Pending | word << this->Bits;
-        this->Pending = next;
-      }
-    }
-    const vtkTypeInt64 total = this->Bits + bits;
-    if (total / 64 < static_cast<vtkTypeInt64>(words.size()))
-    {
-      this->Pending = words.back(); // not full
-      words.pop_back();
-    }
-    this->Bits = total % 64;
-    this->File.write(
-      reinterpret_cast<const char*>(words.data()), words.size() * sizeof(vtkTypeUInt64));
-  }
+  static constexpr vtkTypeInt64 BufferWords = 1 << 16;
 
   std::ostream& File;
-  vtkTypeUInt64 Pending = 0; // the last, incomplete word
-  int Bits = 0;              // its bits in use
+  std::vector<vtkTypeUInt64> Words;
+  vtkTypeInt64 PendingBits = 0; // in Words
 };
 }
 
@@ -169,8 +130,9 @@ void vtkZFPWriter::WriteData()
 //------------------------------------------------------------------------------
 void vtkZFPWriter::WriteFile(vtkCompressedVolume* volume)
 {
-  vtkTypeUInt64 header[3] = { 0, 0, 0 };
-  const size_t headerBits = this->WriteHeader ? MakeHeader(volume, header) : 0;
+  vtkTypeUInt64 header[ZFPHeader::MaximumWords] = {};
+  const int headerBits =
+    this->WriteHeader ? MakeZFPHeader(volume->GetDimensions(), volume->GetBlockBits(), header) : 0;
   if (this->WriteHeader && headerBits == 0)
   {
     vtkErrorMacro("zfp's header holds at most 65536 samples per axis: write without header.");
@@ -185,10 +147,10 @@ void vtkZFPWriter::WriteFile(vtkCompressedVolume* volume)
     return;
   }
   BitWriter writer(file);
-  writer.Write(reinterpret_cast<const unsigned char*>(header), headerBits);
-  writer.Write(
+  writer.Append(header, headerBits);
+  writer.Append(
     volume->GetStream()->GetPointer(0), volume->GetNumberOfBlocks() * volume->GetBlockBits());
-  writer.Finish();
+  writer.Flush();
   file.close();
   if (!file)
   {

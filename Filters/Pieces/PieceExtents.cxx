@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PieceExtents.h"
 
+#include "Codec/BlockGeometry.h"
+
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -79,8 +81,8 @@ void PieceExtents::GetCoveringExtent(
   {
     const int begin = whole[2 * axis];
     // of cell data, the sample at the piece's upper face is the next piece's first
-    const int low = std::max(piece[2 * axis] - 1 - begin, 0) / 4 * 4;
-    const int high = (piece[2 * axis + 1] + 1 - begin) / 4 * 4 + 3 + cells;
+    const int low = std::max(piece[2 * axis] - 1 - begin, 0) / BlockSide * BlockSide;
+    const int high = ((piece[2 * axis + 1] + 1 - begin) / BlockSide + 1) * BlockSide - 1 + cells;
     covering[2 * axis] = begin + low;
     covering[2 * axis + 1] = std::min(begin + high, whole[2 * axis + 1]);
   }

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SampleSummary.h"
+
+#include <algorithm>
+#include <cmath>
+
+//------------------------------------------------------------------------------
+void SampleSummary::Add(float value)
+{
+  if (std::isfinite(value))
+  {
+    this->Minimum = std::min(this->Minimum, value);
+    this->Maximum = std::max(this->Maximum, value);
+  }
+  else if (std::isnan(value))
+  {
+    ++this->NaNs;
+  }
+  else
+  {
+    ++this->Infinities;
+  }
+}
+
+//------------------------------------------------------------------------------
+// Adds four samples at a time, because for many samples this is all the work beside zfp's own.
+void SampleSummary::AddBlock(const float samples[BlockSamples])
+{
+  float low[4], high[4], notFinite[4]; // the latter 0, or NaN if any sample was not finite
+  for (int lane = 0; lane < 4; ++lane)
+  {
+    low[lane] = high[lane] = samples[lane];
+    notFinite[lane] = 0.0f * samples[lane];
+  }
+  for (int i = 4; i < BlockSamples; i += 4)
+  {
+    for (int lane = 0; lane < 4; ++lane)
+    {
+      const float value = samples[i + lane];
+      low[lane] = value < low[lane] ? value : low[lane];
+      high[lane] = value > high[lane] ? value : high[lane];
+      notFinite[lane] += 0.0f * value;
+    }
+  }
+  if (notFinite[0] + notFinite[1] + notFinite[2] + notFinite[3] == 0.0f)
+  {
+    this->Minimum = std::min(this->Minimum, *std::min_element(low, low + 4));
+    this->Maximum = std::max(this->Maximum, *std::max_element(high, high + 4));
+    return;
+  }
+  for (int i = 0; i < BlockSamples; ++i)
+  {
+    this->Add(samples[i]);
+  }
+}
+
+//------------------------------------------------------------------------------
+void SampleSummary::Add(const SampleSummary& other)
+{
+  this->Minimum = std::min(this->Minimum, other.Minimum);
+  this->Maximum = std::max(this->Maximum, other.Maximum);
+  this->NaNs += other.NaNs;
+  this->Infinities += other.Infinities;
+  this->TinyBlocks += other.TinyBlocks;
+}
+
+//------------------------------------------------------------------------------
+void SampleSummary::SubtractCounts(const SampleSummary& other)
+{
+  this->NaNs -= other.NaNs;
+  this->Infinities -= other.Infinities;
+  this->TinyBlocks -= other.TinyBlocks;
+}
+
+//------------------------------------------------------------------------------
+std::array<double, 2> SampleSummary::GetRange() const
+{
+  const bool any = this->Minimum <= this->Maximum;
+  return { { any ? this->Minimum : 0.0, any ? this->Maximum : 0.0 } };
+}
+
+//------------------------------------------------------------------------------
+float SampleSummary::GetMagnitude() const
+{
+  return std::max(std::abs(this->Minimum), std::abs(this->Maximum));
+}
+
+//------------------------------------------------------------------------------
+bool SampleSummary::ShowsTinyBlocks() const
+{
+  // beside a value that is 2^24 times larger, float32 may not tell a tiny value from zero
+  const float enough = TinyMagnitude * 16777216.0f;
+  return this->IsFinite() && this->TinyBlocks > 0 && this->GetMagnitude() < enough;
+}
+
+//------------------------------------------------------------------------------
+Status SampleSummary::CheckValues() const
+{
+  if (!this->IsFinite())
+  {
+    return Status::Error(this->NaNs, " NaN and ", this->Infinities,
+      " infinite values (as float32), which ZFP cannot compress: replace them first, or have them "
+      "hidden (MaskNonFinite).");
+  }
+  if (this->ShowsTinyBlocks())
+  {
+    return Status::Error("values too small for ZFP: the largest is ", this->GetMagnitude(),
+      ", and all are below 3.16e-30 in ", this->TinyBlocks,
+      " blocks of 4x4x4. Scale them up first.");
+  }
+  return {};
+}

@@ -1,0 +1,507 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CompressedVolumeFormat.h"
+
+#include "Pieces/PieceExtents.h"
+
+#include "vtkBlockMask.h"
+#include "vtkCompressedVolume.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkIntArray.h"
+#include "vtkNew.h"
+#include "vtkStringArray.h"
+#include "vtkTypeInt64Array.h"
+#include "vtkTypeUInt64Array.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkVariant.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace
+{
+using Volume = vtkCompressedVolume;
+
+const char* const VersionName = "ProgIso.ZFP.Version";
+const char* const StreamName = "ProgIso.ZFP.Stream";
+const char* const BlockBitsName = "ProgIso.ZFP.BlockBits";
+const char* const DimensionsName = "ProgIso.ZFP.Dimensions";
+const char* const RangeName = "ProgIso.ZFP.Range";
+const char* const ScalarTypeName = "ProgIso.ZFP.ScalarType";
+const char* const ArrayNameName = "ProgIso.ZFP.ArrayName";
+const char* const ComponentName = "ProgIso.ZFP.Component";
+const char* const AssociationName = "ProgIso.ZFP.Association";
+const char* const ExtentName = "ProgIso.ZFP.Extent";
+const char* const OffsetName = "ProgIso.ZFP.Offset";
+const char* const ScaleName = "ProgIso.ZFP.Scale";
+const char* const HiddenSamplesName = "ProgIso.ZFP.HiddenSamples";
+const char* const HiddenCellsName = "ProgIso.ZFP.HiddenCells";
+
+const char* const AllNames[] = { VersionName, StreamName, BlockBitsName, DimensionsName, RangeName,
+  ScalarTypeName, ArrayNameName, ComponentName, AssociationName, ExtentName, OffsetName, ScaleName,
+  HiddenSamplesName, HiddenCellsName };
+
+constexpr int MaximumInt = std::numeric_limits<int>::max();
+
+bool IsCellData(Volume* volume)
+{
+  return volume->GetAssociation() == Volume::CellData;
+}
+
+//------------------------------------------------------------------------------
+// Finds an array of `count` integers, or floating point numbers.
+Status FindNumbers(
+  vtkFieldData* fields, const char* name, int count, bool integers, vtkDataArray*& array)
+{
+  array = vtkArrayDownCast<vtkDataArray>(fields->GetAbstractArray(name));
+  const int type = array ? array->GetDataType() : VTK_VOID;
+  const bool floating = type == VTK_FLOAT || type == VTK_DOUBLE;
+  if (!array || floating == integers || array->GetNumberOfValues() != count)
+  {
+    return Status::Error("its field data array ", name,
+      array ? " does not hold " : " is missing: expected ", count,
+      integers ? " integer" : " floating point", count > 1 ? " values" : " value");
+  }
+  return {};
+}
+
+//------------------------------------------------------------------------------
+Status GetIntegers(vtkFieldData* fields, const char* name, int count, vtkTypeInt64* values)
+{
+  vtkDataArray* array = nullptr;
+  const Status status = FindNumbers(fields, name, count, true, array);
+  for (int i = 0; i < count && status; ++i)
+  {
+    values[i] = array->GetVariantValue(i).ToTypeInt64(); // exact, where GetComponent() is a double
+  }
+  return status;
+}
+
+//------------------------------------------------------------------------------
+// Gets an integer that must be in [low, high].
+Status GetInteger(vtkFieldData* fields, const char* name, int low, int high, int& value)
+{
+  vtkTypeInt64 number = 0;
+  if (Status status = GetIntegers(fields, name, 1, &number); !status)
+  {
+    return status;
+  }
+  if (number < low || number > high)
+  {
+    return Status::Error(name, " is ", number, ", not in ", low, "..", high);
+  }
+  value = static_cast<int>(number);
+  return {};
+}
+
+//------------------------------------------------------------------------------
+Status GetReals(vtkFieldData* fields, const char* name, int count, double* values)
+{
+  vtkDataArray* array = nullptr;
+  const Status status = FindNumbers(fields, name, count, false, array);
+  for (int i = 0; i < count && status; ++i)
+  {
+    values[i] = array->GetVariantValue(i).ToDouble();
+  }
+  return status;
+}
+
+//------------------------------------------------------------------------------
+template <typename ArrayT, typename T>
+void StoreValues(vtkFieldData* fields, const char* name, const T* values, int count)
+{
+  vtkNew<ArrayT> array;
+  array->SetName(name);
+  array->SetNumberOfValues(count);
+  for (int i = 0; i < count; ++i)
+  {
+    array->SetValue(i, values[i]);
+  }
+  fields->AddArray(array);
+}
+
+//------------------------------------------------------------------------------
+template <typename ArrayT, typename T>
+void StoreValue(vtkFieldData* fields, const char* name, const T& value)
+{
+  StoreValues<ArrayT>(fields, name, &value, 1);
+}
+
+//------------------------------------------------------------------------------
+void StoreMask(vtkFieldData* fields, const char* name, const vtkBlockMask& mask)
+{
+  if (!mask.IsEmpty())
+  {
+    const auto array = mask.ToArray();
+    array->SetName(name);
+    fields->AddArray(array);
+  }
+}
+
+//------------------------------------------------------------------------------
+bool IsNumericType(int type)
+{
+  switch (type)
+  {
+    case VTK_BIT:
+    case VTK_CHAR:
+    case VTK_SIGNED_CHAR:
+    case VTK_UNSIGNED_CHAR:
+    case VTK_SHORT:
+    case VTK_UNSIGNED_SHORT:
+    case VTK_INT:
+    case VTK_UNSIGNED_INT:
+    case VTK_LONG:
+    case VTK_UNSIGNED_LONG:
+    case VTK_LONG_LONG:
+    case VTK_UNSIGNED_LONG_LONG:
+    case VTK_ID_TYPE:
+    case VTK_FLOAT:
+    case VTK_DOUBLE:
+      return true;
+    default:
+      return false;
+  }
+}
+
+//------------------------------------------------------------------------------
+Status CheckVersion(vtkFieldData* fields)
+{
+  int version = 0;
+  if (Status status = GetInteger(fields, VersionName, 1, MaximumInt, version); !status)
+  {
+    return status;
+  }
+  return version <= Volume::FormatVersion
+    ? Status()
+    : Status::Error("it has version ", version, " of the format, this ProgIso reads version ",
+        +Volume::FormatVersion, " and older (a newer ProgIso wrote it)");
+}
+
+//------------------------------------------------------------------------------
+Status ReadIntegers(vtkFieldData* fields, Volume* volume)
+{
+  int blockBits = 0, scalarType = 0, component = 0, association = 0;
+  const struct
+  {
+    const char* Name;
+    int Low, High;
+    int& Value;
+  } integers[] = {
+    { BlockBitsName, Volume::MinimumBlockBits, Volume::MaximumBlockBits, blockBits },
+    { ScalarTypeName, 0, MaximumInt, scalarType },
+    { ComponentName, 0, MaximumInt, component },
+    { AssociationName, Volume::PointData, Volume::CellData, association },
+  };
+  for (const auto& integer : integers)
+  {
+    if (Status status = GetInteger(fields, integer.Name, integer.Low, integer.High, integer.Value);
+        !status)
+    {
+      return status;
+    }
+  }
+  volume->SetBlockBits(blockBits);
+  volume->SetScalarType(scalarType);
+  volume->SetComponent(component);
+  volume->SetAssociation(association);
+  return IsNumericType(scalarType)
+    ? Status()
+    : Status::Error(ScalarTypeName, " is ", scalarType, ", not a VTK number type");
+}
+
+//------------------------------------------------------------------------------
+Status ReadNumbers(vtkImageData* image, Volume* volume)
+{
+  vtkFieldData* fields = image->GetFieldData();
+  if (Status status = CheckVersion(fields); !status)
+  {
+    return status;
+  }
+  if (Status status = ReadIntegers(fields, volume); !status)
+  {
+    return status;
+  }
+  double range[2];
+  if (Status status = GetReals(fields, RangeName, 2, range); !status)
+  {
+    return status;
+  }
+  if (!std::isfinite(range[0]) || !std::isfinite(range[1]) || range[0] > range[1])
+  {
+    return Status::Error(RangeName, " is not a finite range");
+  }
+  volume->SetRange(range);
+  return {};
+}
+
+//------------------------------------------------------------------------------
+// Whether sums and differences of positions in an extent do not overflow.
+bool IsBounded(vtkTypeInt64 low, vtkTypeInt64 high)
+{
+  const vtkTypeInt64 most = vtkTypeInt64(1) << 30;
+  return -most <= low && low <= most && -most <= high && high <= most;
+}
+
+//------------------------------------------------------------------------------
+// Whether a stream of these dimensions covers an extent.
+bool Fits(const vtkTypeInt64 extent[6], const vtkTypeInt64 dims[3], bool cells)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const vtkTypeInt64 low = extent[2 * axis], high = extent[2 * axis + 1];
+    if (!IsBounded(low, high) || high - low + (cells ? 0 : 1) != dims[axis])
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+// Sets the extent of the stream: the image's own, or if that has another size, the one that the
+// field data name.
+void ReadExtent(vtkImageData* image, const vtkTypeInt64 dims[3], Volume* volume)
+{
+  const bool cells = IsCellData(volume);
+  vtkTypeInt64 extent[6], named[6];
+  std::copy_n(image->GetExtent(), 6, extent);
+  if (!Fits(extent, dims, cells) && GetIntegers(image->GetFieldData(), ExtentName, 6, named) &&
+    Fits(named, dims, cells))
+  {
+    std::copy_n(named, 6, extent);
+  }
+  int bounds[6];
+  std::transform(
+    extent, extent + 6, bounds, [](vtkTypeInt64 bound) { return static_cast<int>(bound); });
+  volume->SetExtent(bounds);
+}
+
+//------------------------------------------------------------------------------
+Status CheckAxis(int axis, vtkTypeInt64 dimension, const int extent[6], bool cells)
+{
+  const vtkTypeInt64 low = extent[2 * axis], high = extent[2 * axis + 1];
+  const vtkTypeInt64 expected = high - low + (cells ? 0 : 1);
+  const char* const elements = cells ? " cells" : " points";
+  if (dimension != expected)
+  {
+    return Status::Error(DimensionsName, " is ", dimension, " along axis ", axis,
+      ", but the image has ", expected, elements, " there");
+  }
+  if (expected < 2 || expected > MaximumInt)
+  {
+    return Status::Error("it has ", expected, elements, " along axis ", axis,
+      ", at least 2 and at most 2^31-1 are needed");
+  }
+  if (!IsBounded(low, high))
+  {
+    return Status::Error(
+      "its extent along axis ", axis, ", ", low, " to ", high, ", reaches beyond -2^30 or 2^30");
+  }
+  return {};
+}
+
+//------------------------------------------------------------------------------
+Status CheckImageExtent(const int extent[6], Volume* volume)
+{
+  const bool cells = IsCellData(volume);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (extent[2 * axis + 1] < extent[2 * axis] + (cells ? 1 : 0))
+    {
+      return Status::Error("the image has no ", cells ? "cells" : "points", " along axis ", axis);
+    }
+  }
+  return PieceExtents::Contains(volume->GetExtent(), extent)
+    ? Status()
+    : Status::Error("its stream is that of another piece (one compressed volume cannot be put "
+                    "together from several)");
+}
+
+//------------------------------------------------------------------------------
+Status ReadGeometry(vtkImageData* image, Volume* volume)
+{
+  vtkTypeInt64 dims[3];
+  if (Status status = GetIntegers(image->GetFieldData(), DimensionsName, 3, dims); !status)
+  {
+    return status;
+  }
+  ReadExtent(image, dims, volume);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (Status status = CheckAxis(axis, dims[axis], volume->GetExtent(), IsCellData(volume));
+        !status)
+    {
+      return status;
+    }
+  }
+  volume->SetDimensions(
+    static_cast<int>(dims[0]), static_cast<int>(dims[1]), static_cast<int>(dims[2]));
+  return CheckImageExtent(image->GetExtent(), volume);
+}
+
+//------------------------------------------------------------------------------
+Status ReadArrayName(vtkImageData* image, Volume* volume)
+{
+  auto* names =
+    vtkArrayDownCast<vtkStringArray>(image->GetFieldData()->GetAbstractArray(ArrayNameName));
+  if (!names || names->GetNumberOfValues() != 1)
+  {
+    return Status::Error("its field data array ", ArrayNameName, " does not hold one string");
+  }
+  volume->SetArrayName(names->GetValue(0));
+  return {};
+}
+
+//------------------------------------------------------------------------------
+Status ReadStream(vtkImageData* image, Volume* volume)
+{
+  auto* stream =
+    vtkArrayDownCast<vtkUnsignedCharArray>(image->GetFieldData()->GetAbstractArray(StreamName));
+  const vtkTypeInt64 needed =
+    Volume::StreamBytesFor(volume->GetDimensions(), volume->GetBlockBits());
+  if (!stream)
+  {
+    return Status::Error("its field data array ", StreamName, " is not an array of unsigned char");
+  }
+  if (needed < 0 || stream->GetNumberOfValues() < needed)
+  {
+    return Status::Error(StreamName, " is truncated: it has ", stream->GetNumberOfValues(),
+      " bytes, ",
+      needed < 0 ? "its dimensions need more than 2^60" : std::to_string(needed) + " are needed");
+  }
+  volume->SetStream(stream);
+  return {};
+}
+
+//------------------------------------------------------------------------------
+Status ReadUnits(vtkImageData* image, Volume* volume)
+{
+  vtkFieldData* fields = image->GetFieldData();
+  double offset = 0.0, scale = 1.0;
+  for (const auto& [name, value] : { std::pair<const char*, double*>(OffsetName, &offset),
+         std::pair<const char*, double*>(ScaleName, &scale) })
+  {
+    const Status status = fields->HasArray(name) ? GetReals(fields, name, 1, value) : Status();
+    if (!status)
+    {
+      return status;
+    }
+  }
+  if (!std::isfinite(offset))
+  {
+    return Status::Error(OffsetName, " is not finite");
+  }
+  if (!(scale > 0.0 && std::isfinite(scale)))
+  {
+    return Status::Error(ScaleName, " is not a finite number above 0");
+  }
+  volume->SetOffset(offset);
+  volume->SetScale(scale);
+  return {};
+}
+
+//------------------------------------------------------------------------------
+// Reads a mask for a volume of so many blocks; an empty one if it is missing.
+Status ReadMask(vtkFieldData* fields, const char* name, vtkTypeInt64 blocks, vtkBlockMask& mask)
+{
+  vtkAbstractArray* array = fields->GetAbstractArray(name);
+  if (!array)
+  {
+    return {};
+  }
+  vtkDataArray* numbers = vtkArrayDownCast<vtkDataArray>(array);
+  const std::string error =
+    numbers ? mask.FromArray(numbers, blocks) : std::string("does not hold numbers");
+  return error.empty() ? Status() : Status::Error("its field data array ", name, " ", error);
+}
+
+//------------------------------------------------------------------------------
+Status ReadHidden(vtkImageData* image, Volume* volume)
+{
+  vtkFieldData* fields = image->GetFieldData();
+  const vtkTypeInt64 blocks = Volume::NumberOfBlocksFor(volume->GetDimensions());
+  vtkBlockMask samples, cells;
+  if (Status status = ReadMask(fields, HiddenSamplesName, blocks, samples); !status)
+  {
+    return status;
+  }
+  if (Status status = ReadMask(fields, HiddenCellsName, blocks, cells); !status)
+  {
+    return status;
+  }
+  if (IsCellData(volume) && !cells.IsEmpty())
+  {
+    return Status::Error(
+      HiddenCellsName, " is there, but of cell data samples are hidden, not cells");
+  }
+  volume->SetHiddenSamples(samples);
+  volume->SetHiddenCells(cells);
+  return {};
+}
+}
+
+//------------------------------------------------------------------------------
+bool CompressedVolumeFormat::HasStream(vtkDataObject* object)
+{
+  return object && object->GetFieldData() && object->GetFieldData()->HasArray(StreamName);
+}
+
+//------------------------------------------------------------------------------
+Status CompressedVolumeFormat::Read(vtkImageData* image, vtkCompressedVolume* volume)
+{
+  if (!HasStream(image))
+  {
+    return Status::Error(image ? "it has no field data array ProgIso.ZFP.Stream (compress it first)"
+                               : "there is no image");
+  }
+  for (const auto& read :
+    { ReadNumbers, ReadGeometry, ReadArrayName, ReadStream, ReadUnits, ReadHidden })
+  {
+    if (Status status = read(image, volume); !status)
+    {
+      return status;
+    }
+  }
+  return {};
+}
+
+//------------------------------------------------------------------------------
+void CompressedVolumeFormat::Write(vtkCompressedVolume* volume, vtkImageData* image)
+{
+  Remove(image);
+  vtkFieldData* fields = image->GetFieldData();
+  const int* extent = volume->GetExtent();
+  extent = extent[0] > extent[1] ? image->GetExtent() : extent;
+  const bool needsNewest = volume->HidesAny() || volume->HasUnits();
+  StoreValue<vtkIntArray>(fields, VersionName, needsNewest ? Volume::FormatVersion : 1);
+  StoreValue<vtkIntArray>(fields, BlockBitsName, volume->GetBlockBits());
+  StoreValues<vtkTypeInt64Array>(fields, DimensionsName, volume->GetDimensions(), 3);
+  StoreValues<vtkDoubleArray>(fields, RangeName, volume->GetRange(), 2);
+  StoreValue<vtkIntArray>(fields, ScalarTypeName, volume->GetScalarType());
+  StoreValue<vtkIntArray>(fields, ComponentName, volume->GetComponent());
+  StoreValue<vtkIntArray>(fields, AssociationName, volume->GetAssociation());
+  StoreValues<vtkIntArray>(fields, ExtentName, extent, 6);
+  StoreValue<vtkStringArray>(fields, ArrayNameName, volume->GetArrayName());
+  if (volume->HasUnits())
+  {
+    StoreValue<vtkDoubleArray>(fields, OffsetName, volume->GetOffset());
+    StoreValue<vtkDoubleArray>(fields, ScaleName, volume->GetScale());
+  }
+  StoreMask(fields, HiddenSamplesName, volume->GetHiddenSamples());
+  StoreMask(fields, HiddenCellsName, volume->GetHiddenCells());
+  volume->GetStream()->SetName(StreamName);
+  fields->AddArray(volume->GetStream());
+}
+
+//------------------------------------------------------------------------------
+void CompressedVolumeFormat::Remove(vtkDataObject* object)
+{
+  for (const char* name : AllNames)
+  {
+    object->GetFieldData()->RemoveArray(name);
+  }
+}
