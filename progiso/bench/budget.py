@@ -6,16 +6,20 @@ stream to the least that it can work with.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
+from .fields import Field
 from .orbit import render_orbit, times
+from .settings import Settings
 from .timing import summary
 
 #: Budgets of a sweep.
 POINTS = 7
 
 
-def measure_budget(field, settings):
+def measure_budget(field: Field, settings: Settings) -> dict[str, Any]:
     """Measure a field within smaller and smaller memory budgets.
 
     Parameters
@@ -39,7 +43,9 @@ def measure_budget(field, settings):
     return {**settings.heading(field), "free": free, "points": points}
 
 
-def _measure(field, settings, budget):
+def _measure(
+    field: Field, settings: Settings, budget: int
+) -> tuple[dict[str, Any], dict[str, Any]]:
     """The orbit's images within a budget: a point, and the memory at the end."""
     _, images = render_orbit(field, settings, memory_budget=budget)
     about = [image["statistics"] for image in images]

@@ -7,18 +7,22 @@ import importlib.util
 import shlex
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 from ..measure.document import load_document, merge, new_document, save_document
 from ..measure.machine import OtherProcesses, describe_machine, use_all_cores
 from ..rendering import MAX_SIZE
 from .report import PAGE, write_markdown
-from .sets import SETS, steps
+from .sets import SETS, Defaults, steps
 from .settings import IMAGE_SIZES, PEERS, Settings
 
 
-def add_bench(command, size_type):
+def add_bench(
+    command: argparse.ArgumentParser, size_type: Callable[[str], tuple[int, int]]
+) -> None:
     """Give the command ``bench`` its sets and ``report``.
 
     Parameters
@@ -40,11 +44,16 @@ def add_bench(command, size_type):
     report.set_defaults(run=_report)
 
 
-def _sentence(description):
+def _sentence(description: str) -> str:
     return f"{description[0].upper()}{description[1:]}."
 
 
-def _add_set(sets, name, defaults, size_type):
+def _add_set(
+    sets: argparse._SubParsersAction[argparse.ArgumentParser],
+    name: str,
+    defaults: Defaults,
+    size_type: Callable[[str], tuple[int, int]],
+) -> None:
     one = sets.add_parser(
         name, help=defaults.description, description=_sentence(defaults.description)
     )
@@ -100,17 +109,17 @@ def _add_set(sets, name, defaults, size_type):
     one.set_defaults(run=_measure, set=name)
 
 
-def _add_output(command, more=""):
+def _add_output(command: argparse.ArgumentParser, more: str = "") -> None:
     command.add_argument(
         "--output", metavar="DIR", type=Path, default=Path("bench"),
         help=f"folder for the results, made when it is missing (default: %(default)s){more}",
     )  # fmt: skip
 
 
-def _at_least(least):
+def _at_least(least: int) -> Callable[[str], int]:
     """A type of option: whole numbers from `least` on."""
 
-    def whole(text):
+    def whole(text: str) -> int:
         if not text.isdecimal() or int(text) < least:
             raise argparse.ArgumentTypeError(f"'{text}' is no whole number of at least {least}")
         return int(text)
@@ -118,14 +127,14 @@ def _at_least(least):
     return whole
 
 
-def _isovalues(text):
+def _isovalues(text: str) -> int | str:
     return PEERS if text == PEERS else _at_least(1)(text)
 
 
 # ---- running
 
 
-def _measure(parsed):
+def _measure(parsed: argparse.Namespace) -> None:
     """Run a set; results are saved after every measurement, so that an interrupted run counts."""
     given = {field.name: getattr(parsed, field.name, None) for field in fields(Settings)}
     settings = Settings(**{key: value for key, value in given.items() if value is not None})
@@ -152,7 +161,7 @@ def _measure(parsed):
     _write(document, parsed.output / PAGE, parsed.output, not parsed.no_plots)
 
 
-def _report(parsed):
+def _report(parsed: argparse.Namespace) -> None:
     _check_matplotlib()
     documents = [load_document(path) for path in parsed.results]
     page, folder = parsed.output / PAGE, parsed.output
@@ -165,12 +174,12 @@ def _report(parsed):
         raise ValueError(f"the results lack {error}: measure again") from None
 
 
-def _check_matplotlib():
+def _check_matplotlib() -> None:
     if importlib.util.find_spec("matplotlib") is None:
         raise ImportError("plots need matplotlib: install it, or give --no-plots where it is taken")
 
 
-def _write(document, page, folder, with_plots):
+def _write(document: dict[str, Any], page: Path, folder: Path, with_plots: bool) -> None:
     """Write plots to the folder and the Markdown page, and say where that is."""
     plots = {}
     if with_plots:

@@ -14,7 +14,9 @@ too, which are else decoded when they are loaded and need one pass.
 from __future__ import annotations
 
 import statistics
+from collections.abc import Callable, Sequence
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 
@@ -24,9 +26,10 @@ from ..measure.agreement import depth_error
 from ..measure.isosurface import Isosurface
 from ..measure.machine import available_bytes
 from ..measure.mesh import Mesh, extract
-from ..measure.view import opposite
-from ..oracle.caster import Camera, Volume, cast
-from .fields import compressed, gib, plain
+from ..measure.view import View, opposite
+from ..oracle.caster import Camera, Cast, Volume, cast
+from .fields import Field, compressed, gib, plain
+from .settings import Settings
 from .volume_mapper import VolumeMapper
 
 #: Bits per sample, and VTK's distances between samples in the smallest spacing.
@@ -43,7 +46,12 @@ _REPEAT, _ENOUGH_MS = 3, 5000.0
 _VOLUMES = 2.5
 
 
-def measure_errors(field, settings, rates=RATES, distances=SAMPLE_DISTANCES):
+def measure_errors(
+    field: Field,
+    settings: Settings,
+    rates: Sequence[float] = RATES,
+    distances: Sequence[float] = SAMPLE_DISTANCES,
+) -> dict[str, Any]:
     """Measure error and time of all peers for one image of a field.
 
     Parameters
@@ -62,13 +70,15 @@ def measure_errors(field, settings, rates=RATES, distances=SAMPLE_DISTANCES):
         figures. With ``left_out`` there is no image.
     """
 
-    def measure():
+    def measure() -> dict[str, Any]:
         return _Measurement(field, settings).run(rates, distances)
 
     return of_one_image(field, settings, measure)
 
 
-def of_one_image(field, settings, measure):
+def of_one_image(
+    field: Field, settings: Settings, measure: Callable[[], dict[str, Any]]
+) -> dict[str, Any]:
     """A record of the image of the first isovalue from the first position, where memory allows it.
 
     Parameters
@@ -91,7 +101,7 @@ def of_one_image(field, settings, measure):
     return {**heading, **measure()}
 
 
-def cast_uncompressed(field, settings):
+def cast_uncompressed(field: Field, settings: Settings) -> Cast:
     """The caster's image of the uncompressed samples, within the clipping planes of ProgIso's view.
 
     Parameters
@@ -116,19 +126,18 @@ def cast_uncompressed(field, settings):
 class _Measurement:
     """One image of one field by all peers."""
 
-    def __init__(self, field, settings):
+    def __init__(self, field: Field, settings: Settings) -> None:
         self._field, self._settings = field, settings
         self._image = plain(field)
         self._isovalue = settings.isovalues_of(field)[0]
         self._camera = settings.cameras(self._image)[0]
         self._repeat = max(_REPEAT, settings.repeat)
-        self._expected = None
-        self._resolution = {}
-
-    def run(self, rates, distances):
+        self._resolution: dict[str, float] = {}
         start = perf_counter()
-        self._expected = cast_uncompressed(self._field, self._settings)
-        milliseconds = 1e3 * (perf_counter() - start)
+        self._expected = cast_uncompressed(field, settings)
+        self._cast_ms = 1e3 * (perf_counter() - start)
+
+    def run(self, rates: Sequence[float], distances: Sequence[float]) -> dict[str, Any]:
         hits = int(np.isfinite(self._expected.depth).sum())
         series = {
             "ProgIso, pass by pass": self._passes(),
@@ -138,21 +147,21 @@ class _Measurement:
         }
         return {
             "isovalue": self._isovalue,
-            "oracle": {"ms": milliseconds, "hits": hits},
+            "oracle": {"ms": self._cast_ms, "hits": hits},
             "resolution": self._resolution,
             "series": series,
         }
 
-    def _time(self, view):
+    def _time(self, view: View) -> float:
         """Median milliseconds of the view after its opposite; the view is rendered last."""
-        times = []
+        times: list[float] = []
         view.warm_up(self._camera)
         while not times or (len(times) < self._repeat and sum(times) < _ENOUGH_MS):
             view.render_from(opposite(self._camera))
             times.append(view.render_from(self._camera))
         return statistics.median(times)
 
-    def _point(self, label, milliseconds, view):
+    def _point(self, label: str, milliseconds: float, view: View) -> dict[str, Any]:
         """A point of a series; keeps note of how exact the peer's depths are."""
         depth, expected = view.depth(), self._expected
         self._resolution[view.label] = view.depth_resolution() * float(expected.voxels.max())
@@ -162,27 +171,28 @@ class _Measurement:
             **depth_error(depth, expected.depth, expected.voxels),
         }
 
-    def _passes(self):
+    def _passes(self) -> list[dict[str, Any]]:
         image = compressed(self._field)
         view = Isosurface(image, self._isovalue, self._settings.size, cached=True)
         view.warm_up(self._camera)
         view.render_from(opposite(self._camera))
         view.set_passes_per_render(1)
         view.look(self._camera)
-        points, elapsed = [], 0.0
+        points: list[dict[str, Any]] = []
+        elapsed = 0.0
         while not points or not view.converged():
             elapsed += view.render()
             points.append(self._point(f"pass {len(points) + 1}", elapsed, view))
         view.close()
         return points
 
-    def _rate(self, rate):
+    def _rate(self, rate: float) -> dict[str, Any]:
         view = Isosurface(compress(self._image, rate=rate), self._isovalue, self._settings.size)
         point = self._point(f"{rate:g} bits", self._time(view), view)
         view.close()
         return point
 
-    def _mapper(self, distance):
+    def _mapper(self, distance: float | None) -> dict[str, Any]:
         view = VolumeMapper(self._image, self._isovalue, self._settings.size, distance)
         unit = "voxel" if distance == 1 else "voxels"
         label = DEFAULT_DISTANCE if distance is None else f"{distance:g} {unit}"
@@ -190,7 +200,7 @@ class _Measurement:
         view.close()
         return point
 
-    def _mesh(self):
+    def _mesh(self) -> list[dict[str, Any]]:
         mesh, extraction = extract(self._image, self._isovalue)
         view = Mesh(mesh, self._settings.size)
         first = extraction + view.render_from(self._camera)

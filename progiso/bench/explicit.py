@@ -7,8 +7,10 @@ reaches into, and makes the whole mesh, seen or not.
 from __future__ import annotations
 
 from itertools import product
+from typing import Any
 
 import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from ..measure.machine import PeakMemory
 from ..measure.mesh import extract, mesh_bytes
@@ -28,7 +30,7 @@ class BlockRanges:
         The decompressed samples.
     """
 
-    def __init__(self, values):
+    def __init__(self, values: np.ndarray) -> None:
         layers = range(0, values.shape[0], _SIDE)
         slabs = [values[z : z + _SIDE + 1] for z in layers]
         self._low = np.stack([_over_blocks(slab.min(axis=0), np.minimum) for slab in slabs])
@@ -38,7 +40,7 @@ class BlockRanges:
         self._has_cells = np.zeros(self._low.shape, bool)
         self._has_cells[cells] = True
 
-    def count(self, isovalue):
+    def count(self, isovalue: float) -> dict[str, int]:
         """Count the blocks that an isovalue takes.
 
         Parameters
@@ -60,7 +62,7 @@ class BlockRanges:
         return {"blocks": held.size, "held": int(held.sum()), "active": int(active.sum())}
 
 
-def _over_blocks(plane, pick):
+def _over_blocks(plane: np.ndarray, pick: np.ufunc) -> np.ndarray:
     """Extremes over the blocks of a plane and the samples one beyond."""
     for axis in range(2):
         starts = np.arange(0, plane.shape[axis], _SIDE)
@@ -72,7 +74,7 @@ def _over_blocks(plane, pick):
     return plane
 
 
-def measure_mesh(image, isovalue):
+def measure_mesh(image: vtkImageData, isovalue: float) -> dict[str, Any]:
     """Extract the mesh and see what it takes.
 
     Parameters

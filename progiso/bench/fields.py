@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Optional
+from typing import Any
 
 import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from ..compression import compress, decompress
 from ..data import GENERATORS, SCANS, cache_folder, fetch
@@ -47,12 +49,12 @@ class Field:
     """
 
     volume: str
-    dimensions: tuple
+    dimensions: tuple[int, int, int]
     rate: float
-    k: Optional[float] = None
+    k: float | None = None
 
     @property
-    def name(self):
+    def name(self) -> str:
         """What the field is asked for and reported by."""
         if self.volume in SCANS:
             return f"{self.volume}-r{self.rate:g}"
@@ -62,23 +64,23 @@ class Field:
         return f"{self.volume}-{size}{k}-r{self.rate:g}"
 
     @property
-    def voxels(self):
+    def voxels(self) -> int:
         """Number of samples."""
         return int(np.prod(self.dimensions, dtype=object))
 
     @property
-    def blocks(self):
+    def blocks(self) -> int:
         """Number of 4³ blocks."""
         return int(np.prod([-(-n // 4) for n in self.dimensions], dtype=object))
 
     @property
-    def isovalues(self):
+    def isovalues(self) -> tuple[float, ...]:
         """Fixed isovalues, the most interesting first."""
         if self.volume in SCANS:
             return tuple(map(float, SCANS[self.volume].isovalues.values()))
         return tuple(map(float, GENERATORS[self.volume].isovalues))
 
-    def random_isovalues(self, count, seed):
+    def random_isovalues(self, count: int, seed: int) -> list[float]:
         """Draw isovalues from the range of interest, which the fixed ones span.
 
         Parameters
@@ -96,7 +98,7 @@ class Field:
         return np.random.default_rng(seed).uniform(low, high, count).tolist()
 
 
-def parse_field(name):
+def parse_field(name: str) -> Field:
     """Make a field of its name.
 
     Parameters
@@ -121,7 +123,7 @@ def parse_field(name):
     """
     match = _NAME.fullmatch(name)
     volume = match["volume"] if match else name
-    if volume not in SCANS and volume not in GENERATORS:
+    if match is None or volume not in SCANS and volume not in GENERATORS:
         known = ", ".join((*SCANS, *GENERATORS))
         raise ValueError(f"no field '{name}': write NAME-SIZE-kK-rRATE, NAME one of {known}")
     rate = float(match["rate"]) if match["rate"] else None
@@ -136,7 +138,7 @@ def parse_field(name):
     return Field(volume, dimensions, rate or GENERATED_RATE, _frequency(name, volume, match["k"]))
 
 
-def _frequency(name, volume, text):
+def _frequency(name: str, volume: str, text: str | None) -> float | None:
     """The parameter k of a generator, checked."""
     option = GENERATORS[volume].options.get("k")
     if text is None:
@@ -148,7 +150,7 @@ def _frequency(name, volume, text):
     return float(text)
 
 
-def plain_path(field):
+def plain_path(field: Field) -> Path:
     """File of the uncompressed volume, fetched or generated when it is not cached yet.
 
     Parameters
@@ -170,19 +172,19 @@ def plain_path(field):
     return fetch(field.volume, size=field.dimensions, **_options(field))
 
 
-def _options(field):
+def _options(field: Field) -> dict[str, Any]:
     """Options of the field's generator."""
     return {} if field.k is None else {"k": field.k}
 
 
-def _check_disk(needed, what):
+def _check_disk(needed: int, what: str) -> None:
     free = shutil.disk_usage(cache_folder()).free
     if needed > free:
         raise TooLarge(f"its {what} take {gib(needed)} of disk, {gib(free)} are free")
 
 
 @lru_cache(maxsize=1)
-def plain(field):
+def plain(field: Field) -> vtkImageData:
     """The uncompressed volume; a generated one is a memory map, not to be written to.
 
     Parameters
@@ -202,7 +204,7 @@ def plain(field):
 
 
 @lru_cache(maxsize=1)
-def compressed(field):
+def compressed(field: Field) -> vtkImageData:
     """The compressed volume; a generated one is made without its samples ever being there as a
     whole.
 
@@ -225,7 +227,7 @@ def compressed(field):
     return read(fetch_compressed(field.volume, field.dimensions, field.rate, **_options(field)))
 
 
-def save_compressed(field, folder):
+def save_compressed(field: Field, folder: str | os.PathLike[str]) -> Path:
     """Write the compressed volume in the format that loads fastest.
 
     Parameters
@@ -243,7 +245,7 @@ def save_compressed(field, folder):
     return path
 
 
-def decompressed(field):
+def decompressed(field: Field) -> vtkImageData:
     """What the compressed volume holds, as float32 samples.
 
     Parameters
@@ -257,7 +259,7 @@ def decompressed(field):
     return decompress(compressed(field))
 
 
-def gib(count):
+def gib(count: int) -> str:
     """A number of bytes for people.
 
     Examples

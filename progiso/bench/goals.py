@@ -7,7 +7,9 @@ size (width and height in pixels). Times are in milliseconds, memory is in bytes
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from ..measure.text import bytes_, milliseconds, number
 from .literature import GPU, SOFTWARE, literature
@@ -63,7 +65,7 @@ class Verdict:
     timed: bool = True
 
 
-def machine_kind(machine):
+def machine_kind(machine: dict[str, Any]) -> str | None:
     """`literature.GPU` or `literature.SOFTWARE`; None for a machine that has no goals of its own.
 
     Parameters
@@ -76,7 +78,7 @@ def machine_kind(machine):
     return SOFTWARE if "llvmpipe" in machine["gl"] and machine["cores"] <= 2 else None
 
 
-def is_busy(machine, record):
+def is_busy(machine: dict[str, Any], record: dict[str, Any]) -> bool:
     """Whether others kept the machine so busy that a record's times tell little.
 
     Parameters
@@ -88,15 +90,24 @@ def is_busy(machine, record):
     return (record["others_cores"] or 0.0) > QUIET * machine["cores"]
 
 
-def _at_most(what, value, limit, show, note="", timed=True):
+def _at_most(
+    what: str,
+    value: float,
+    limit: float,
+    show: Callable[[float], str],
+    note: str = "",
+    timed: bool = True,
+) -> Verdict:
     return Verdict(what, show(value), f"≤ {show(limit)}{note}", value <= limit, timed)
 
 
-def _on_gpu(machine, size):
+def _on_gpu(machine: dict[str, Any], size: Sequence[int]) -> bool:
     return machine_kind(machine) == GPU and tuple(size) == HD
 
 
-def complete_image(machine, size, voxels, mean_ms):
+def complete_image(
+    machine: dict[str, Any], size: Sequence[int], voxels: int, mean_ms: float
+) -> Verdict | None:
     """Mean time of a complete image."""
     if not _on_gpu(machine, size):
         return None
@@ -105,49 +116,49 @@ def complete_image(machine, size, voxels, mean_ms):
     return _at_most("complete image, mean", mean_ms, limit, milliseconds, f" ({GPU})")
 
 
-def first_pass(machine, size, mean_ms):
+def first_pass(machine: dict[str, Any], size: Sequence[int], mean_ms: float) -> Verdict | None:
     """Mean time to the first partial image."""
     if not _on_gpu(machine, size):
         return None
     return _at_most("first pass, mean", mean_ms, FIRST_PASS_MS, milliseconds, f" ({GPU})")
 
 
-def file_to_image(machine, size, ms):
+def file_to_image(machine: dict[str, Any], size: Sequence[int], ms: float) -> Verdict | None:
     """Time from a file to the first image."""
     if not _on_gpu(machine, size):
         return None
     return _at_most("file to first image", ms, FILE_MS, milliseconds, f" ({GPU})")
 
 
-def moved(cold_ms, moved_ms):
+def moved(cold_ms: float, moved_ms: float) -> Verdict:
     """Mean times of the cold image and after a move of two degrees."""
     limit = MOVED * cold_ms
     goal = f"≤ half of cold ({milliseconds(limit)})"
     return Verdict("move by 2°", milliseconds(moved_ms), goal, moved_ms <= limit)
 
 
-def time_exponent(value):
+def time_exponent(value: float | None) -> Verdict | None:
     """Exponent of time over voxels; None without one."""
     return (
         None if value is None else _at_most("time over voxels, exponent", value, EXPONENT, number)
     )
 
 
-def per_block(value):
+def per_block(value: float | None) -> Verdict | None:
     """Bytes of GPU memory that a block more takes beside its payload; None without a figure."""
     if value is None:
         return None
     return _at_most("GPU bytes per block", value, BYTES_PER_BLOCK, number, timed=False)
 
 
-def per_pixel(value):
+def per_pixel(value: float | None) -> Verdict | None:
     """Bytes of GPU memory that a pixel more takes; None without a figure."""
     if value is None:
         return None
     return _at_most("GPU bytes per pixel", value, BYTES_PER_PIXEL, number, timed=False)
 
 
-def beside_payload(memory):
+def beside_payload(memory: dict[str, Any]) -> Verdict:
     """Memory of `protocol.measure_protocol`, all that is neither payload nor cache."""
     limit = BYTES_PER_BLOCK * memory["blocks"] + BYTES_PER_PIXEL * memory["pixels"]
     note = f" ({BYTES_PER_BLOCK} a block, {BYTES_PER_PIXEL} a pixel)"
@@ -155,12 +166,12 @@ def beside_payload(memory):
     return _at_most(what, memory["other_max"], limit, bytes_, note, timed=False)
 
 
-def within_budget(beside, budget):
+def within_budget(beside: int, budget: int) -> Verdict:
     """GPU memory beside the compressed stream against the budget that was set."""
     return _at_most("GPU memory beside the stream", beside, budget, bytes_, timed=False)
 
 
-def memory_growth(what, key, bytes_per_frame):
+def memory_growth(what: str, key: str, bytes_per_frame: float | None) -> Verdict | None:
     """Growth of a sort of memory, see `soak.measure_soak`; None without a figure."""
     if bytes_per_frame is None:
         return None
@@ -169,12 +180,19 @@ def memory_growth(what, key, bytes_per_frame):
     return Verdict(what, bytes_(grown), f"≤ {bytes_(limit)}{note}", grown <= limit, timed=False)
 
 
-def no_gl_errors(count):
+def no_gl_errors(count: int) -> Verdict:
     """OpenGL's errors of a long run."""
     return Verdict("OpenGL errors", str(count), "none", count == 0, timed=False)
 
 
-def against_mapper(machine, size, field, voxels, ours_ms, mapper_ms):
+def against_mapper(
+    machine: dict[str, Any],
+    size: Sequence[int],
+    field: str,
+    voxels: int,
+    ours_ms: float,
+    mapper_ms: float,
+) -> Verdict | None:
     """Mean times of complete images, ours and of VTK's mapper."""
     kind = machine_kind(machine)
     without_gpu = kind == SOFTWARE and field.startswith(FASTER_WITHOUT_GPU)
@@ -185,7 +203,9 @@ def against_mapper(machine, size, field, voxels, ours_ms, mapper_ms):
     return Verdict(what, milliseconds(ours_ms), f"< VTK's mapper ({limit})", ours_ms < mapper_ms)
 
 
-def memory_against_mapper(machine, voxels, ours_bytes, mapper_bytes):
+def memory_against_mapper(
+    machine: dict[str, Any], voxels: int, ours_bytes: int, mapper_bytes: int
+) -> Verdict | None:
     """Most GPU memory in use, ours and with VTK's mapper."""
     if machine_kind(machine) != GPU or voxels < LARGE:
         return None
@@ -194,11 +214,13 @@ def memory_against_mapper(machine, voxels, ours_bytes, mapper_bytes):
     return Verdict("GPU memory", bytes_(ours_bytes), goal, ours_bytes <= limit, timed=False)
 
 
-def against_paper(machine, field, size, mean_ms):
+def against_paper(
+    machine: dict[str, Any], field: str, size: Sequence[int], mean_ms: float
+) -> list[Verdict]:
     """Mean time of a complete image against the paper's implementation: a list of verdicts."""
     kind = machine_kind(machine)
     figure = literature(kind, field, size)
-    if figure is None:
+    if kind is None or figure is None:
         return []
     variants = ("the paper's implementation", "the same with its sort replaced")
     times = zip(variants, (figure.ms, figure.strong_ms), FASTER_THAN_PAPER[kind])
@@ -214,7 +236,9 @@ def against_paper(machine, field, size, mean_ms):
     ]
 
 
-def error_against_mapper(field, ours, mapper):
+def error_against_mapper(
+    field: str, ours: Sequence[dict[str, Any]], mapper: dict[str, Any]
+) -> Verdict | None:
     """Whether some rate is faster than VTK's mapper at no larger mean depth error.
 
     Parameters

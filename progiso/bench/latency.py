@@ -14,16 +14,19 @@ First pass
 
 from __future__ import annotations
 
+from typing import Any
+
 from ..measure.isosurface import Isosurface
 from ..measure.view import turned
-from .fields import compressed
+from .fields import Field, compressed
+from .settings import Settings
 from .timing import summary
 
 #: Degrees of a small move.
 MOVE = 2.0
 
 
-def measure_latency(field, settings):
+def measure_latency(field: Field, settings: Settings) -> dict[str, Any]:
     """Measure cold images, small moves and first passes of a field.
 
     Parameters

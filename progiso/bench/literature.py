@@ -7,8 +7,8 @@ radix sorts by block replaced by a counting sort, which leaves every image as it
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Optional
 
 GPU, SOFTWARE = "NVIDIA H200", "2 cores, Mesa lavapipe"
 
@@ -43,10 +43,10 @@ class Figure:
 
     machine: str
     field: str
-    size: tuple
+    size: tuple[int, int]
     ms: float
-    strong_ms: Optional[float]
-    gpu_mib: Optional[float] = None
+    strong_ms: float | None
+    gpu_mib: float | None = None
 
 
 FIGURES = (
@@ -65,7 +65,7 @@ FIGURES = (
 )
 
 
-def literature(machine, field, size):
+def literature(machine: str | None, field: str, size: Sequence[int]) -> Figure | None:
     """Look up the figure for a kind of machine.
 
     Parameters

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from ..measure.isosurface import Isosurface
-from .fields import compressed
+from .fields import Field, compressed
+from .settings import Settings
 
 
-def render_orbit(field, settings, **options):
+def render_orbit(
+    field: Field, settings: Settings, **options: Any
+) -> tuple[float, list[dict[str, Any]]]:
     """Render a field at every isovalue from every position of the orbit, in a new window.
 
     Before that one image is rendered and not counted, on a GPU for a second: it uploads the volume,
@@ -41,6 +46,6 @@ def render_orbit(field, settings, **options):
     return first, images
 
 
-def times(images):
+def times(images: list[dict[str, Any]]) -> list[float]:
     """Milliseconds of the images of `render_orbit`, a list."""
     return [image["ms"] for image in images]

@@ -11,13 +11,19 @@ the plain file.
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Callable
+from pathlib import Path
 from time import perf_counter
+from typing import Any
+
+from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from ..io import read
 from ..measure.isosurface import Isosurface
 from ..measure.machine import PeakMemory, available_bytes, gpu_bytes
 from ..measure.mesh import Mesh, extract, mesh_bytes
-from .fields import gib, plain_path, save_compressed
+from .fields import Field, gib, plain_path, save_compressed
+from .settings import Settings
 from .timing import summary
 from .volume_mapper import VolumeMapper
 
@@ -25,7 +31,7 @@ from .volume_mapper import VolumeMapper
 _PEER_VOLUMES = 2.5
 
 
-def measure_peers(field, settings):
+def measure_peers(field: Field, settings: Settings) -> dict[str, Any]:
     """Measure all peers on a field.
 
     Parameters
@@ -60,7 +66,9 @@ def measure_peers(field, settings):
     return {**settings.heading(field), "rows": rows}
 
 
-def _measure(label, peer, path, field, settings):
+def _measure(
+    label: str, peer: Callable[..., dict[str, Any]], path: Path, field: Field, settings: Settings
+) -> dict[str, Any]:
     """One peer's row: its own figures and the memory it took."""
     gpu, peak = _Gpu(), PeakMemory()
     figures = peer(path, field, settings, gpu)
@@ -70,24 +78,25 @@ def _measure(label, peer, path, field, settings):
 class _Gpu:
     """The most GPU memory seen in use, above what was in use at first."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._before = gpu_bytes()
         self.peak = None if self._before is None else 0
 
-    def look(self):
+    def look(self) -> None:
         """Look once; it takes some milliseconds, so not while something is timed."""
-        if self.peak is not None:
-            self.peak = max(self.peak, gpu_bytes() - self._before)
+        used = gpu_bytes()
+        if self.peak is not None and self._before is not None and used is not None:
+            self.peak = max(self.peak, used - self._before)
 
 
-def _read(path):
+def _read(path: Path) -> tuple[vtkImageData, float]:
     """Read a file; the image and the milliseconds that took."""
     start = perf_counter()
     image = read(path)
     return image, 1e3 * (perf_counter() - start)
 
 
-def _measure_ours(path, field, settings, gpu):
+def _measure_ours(path: Path, field: Field, settings: Settings, gpu: _Gpu) -> dict[str, Any]:
     image, reading = _read(path)
     view = Isosurface(image, settings.isovalues_of(field)[0], settings.size)
     figures = _measure_frames(view, image, field, settings, gpu)
@@ -95,14 +104,20 @@ def _measure_ours(path, field, settings, gpu):
     return {"file_ms": reading + figures["first_ms"], **figures, "mapper_bytes": held}
 
 
-def _measure_mapper(path, field, settings, gpu):
+def _measure_mapper(path: Path, field: Field, settings: Settings, gpu: _Gpu) -> dict[str, Any]:
     image, reading = _read(path)
     view = VolumeMapper(image, settings.isovalues_of(field)[0], settings.size)
     figures = _measure_frames(view, image, field, settings, gpu)
     return {"file_ms": reading + figures["first_ms"], **figures}
 
 
-def _measure_frames(view, image, field, settings, gpu):
+def _measure_frames(
+    view: Isosurface | VolumeMapper,
+    image: vtkImageData,
+    field: Field,
+    settings: Settings,
+    gpu: _Gpu,
+) -> dict[str, Any]:
     """First frame, and later ones at every isovalue from every position; closes the view."""
     cameras = settings.cameras(image)
     first, later = view.warm_up(cameras[-1]), []
@@ -115,7 +130,7 @@ def _measure_frames(view, image, field, settings, gpu):
     return {"first_ms": first, "later": summary(later)}
 
 
-def _measure_mesh(path, field, settings, gpu):
+def _measure_mesh(path: Path, field: Field, settings: Settings, gpu: _Gpu) -> dict[str, Any]:
     image, reading = _read(path)
     cameras = settings.cameras(image)
     extraction, first, later, triangles, sizes = [], [], [], [], []

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
@@ -33,7 +38,7 @@ _STYLE = {
 }
 
 
-def draw_plots(document, folder):
+def draw_plots(document: dict[str, Any], folder: str | os.PathLike[str]) -> dict[str, list[str]]:
     """Draw all plots that the results allow.
 
     Parameters
@@ -48,7 +53,7 @@ def draw_plots(document, folder):
     dict
         {kind of measurement: names of its files}, in order.
     """
-    plots = {}
+    plots: dict[str, list[str]] = {}
     for kind, draw in _DRAW.items():
         records = document["measurements"].get(kind, [])
         with matplotlib.rc_context(_STYLE):
@@ -59,21 +64,21 @@ def draw_plots(document, folder):
     return plots
 
 
-def _figure(width, height, **layout):
+def _figure(width: float, height: float, **layout: Any) -> tuple[Figure, Any]:
     figure = Figure(figsize=(width, height), layout="constrained")
     return figure, figure.subplots(**layout)
 
 
-def _titled(record):
+def _titled(record: dict[str, Any]) -> str:
     return f"{record['field']}, {pixels(record['size'])}"
 
 
-def _file(kind, record):
+def _file(kind: str, record: dict[str, Any]) -> str:
     width, height = record["size"]
     return f"{kind}-{record['field']}-{width}x{height}"
 
 
-def _log(axis):
+def _log(axis: Axis) -> None:
     """Plain numbers on a logarithmic axis that is drawn already, few enough to be read."""
     low, high = axis.get_view_interval()
     steps = (1, 1.5, 2, 3, 4, 5, 7) if high < 10 * low else (1, 2, 5) if high < 999 * low else (1,)
@@ -82,7 +87,7 @@ def _log(axis):
     axis.set_minor_formatter(NullFormatter())
 
 
-def _decade_below(values):
+def _decade_below(values: Iterable[float]) -> float:
     """Where logarithmic bars may begin."""
     return 10.0 ** np.floor(np.log10(0.9 * min(values)))
 
@@ -90,7 +95,7 @@ def _decade_below(values):
 # ---- side by side
 
 
-def _draw_peers(records):
+def _draw_peers(records: list[dict[str, Any]]) -> dict[str, Figure]:
     figures = {}
     for record in records:
         rows = [row for row in record["rows"] if "failed" not in row]
@@ -123,7 +128,7 @@ _PEER_COLORS = {
 }
 
 
-def _peer_bars(row):
+def _peer_bars(row: dict[str, Any]) -> list[tuple[str, float]]:
     extraction = row["extraction"]["mean"] if "extraction" in row else 0.0
     values = (row["file_ms"], row["first_ms"] + extraction, row["later"]["mean"])
     return list(zip(_PEER_COLORS, values))
@@ -132,7 +137,7 @@ def _peer_bars(row):
 # ---- the paper's figures
 
 
-def _draw_protocol(records):
+def _draw_protocol(records: list[dict[str, Any]]) -> dict[str, Figure]:
     figures = {_file("passes", record): _passes(record) for record in records}
     figures["completeness"] = _completeness(records)
     with_explicit = [record for record in records if "left_out" not in record["explicit"]]
@@ -141,7 +146,7 @@ def _draw_protocol(records):
     return figures
 
 
-def _passes(record):
+def _passes(record: dict[str, Any]) -> Figure:
     """The paper's Figure 4: time and live rays per pass, with and without speculation."""
     figure, (upper, lower) = _figure(7, 5, nrows=2, sharex=True)
     series = (("with", "with speculation", *_CYCLE[0]), ("without", "without", *_CYCLE[1]))
@@ -163,7 +168,7 @@ def _passes(record):
     return figure
 
 
-def _completeness(records):
+def _completeness(records: list[dict[str, Any]]) -> Figure:
     """The paper's Figure 6: completed part of the image per pass."""
     figure, axes = _figure(7, 4)
     for record, (color, marker) in zip(records, _CYCLE * len(records)):
@@ -180,7 +185,7 @@ def _completeness(records):
     return figure
 
 
-def _active_blocks(records):
+def _active_blocks(records: list[dict[str, Any]]) -> Figure:
     """The paper's Figure 8: blocks in use, ours against explicit extraction."""
     figure, axes = _figure(8, 1.2 + 0.7 * len(records))
     smallest = []
@@ -213,12 +218,12 @@ def _active_blocks(records):
 # ---- error against run time
 
 
-def _draw_errors(records):
+def _draw_errors(records: list[dict[str, Any]]) -> dict[str, Figure]:
     records = [record for record in records if "left_out" not in record]
     return {_file("error", record): _error_over_time(record) for record in records}
 
 
-def _error_over_time(record):
+def _error_over_time(record: dict[str, Any]) -> Figure:
     figure, (upper, lower) = _figure(
         9, 7.5, nrows=2, sharex=True, gridspec_kw={"height_ratios": [2.2, 1]}
     )
@@ -248,7 +253,7 @@ def _error_over_time(record):
     return figure
 
 
-def _draw_rates(records):
+def _draw_rates(records: list[dict[str, Any]]) -> dict[str, Figure]:
     figure, (upper, lower) = _figure(8, 7, nrows=2, sharex=True)
     for record, (color, marker) in zip(records, _CYCLE):
         points = [point for point in record.get("points", []) if point["p99"]]
@@ -266,13 +271,15 @@ def _draw_rates(records):
     return {"rates": figure}
 
 
-def _line(points):
+def _line(points: list[dict[str, Any]]) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
     """The points of a series that one setting tells apart, and those that stand alone."""
     line = [point for point in points if point["label"] != DEFAULT_DISTANCE]
     return line, [point for point in points if point["label"] == DEFAULT_DISTANCE]
 
 
-def _draw_depth_error(axes, name, points, color, marker):
+def _draw_depth_error(
+    axes: Axes, name: str, points: list[dict[str, Any]], color: str, marker: str
+) -> None:
     line, alone = _line(points)
     axes.plot(*_xy(line, "mean"), color=color, marker=marker, label=name)
     axes.plot(*_xy(alone, "mean"), color=color, marker=marker, ls="none", mfc="white", ms=9,
@@ -289,21 +296,21 @@ def _draw_depth_error(axes, name, points, color, marker):
         )  # fmt: skip
 
 
-def _draw_wrong(axes, points, color, marker):
+def _draw_wrong(axes: Axes, points: list[dict[str, Any]], color: str, marker: str) -> None:
     line, alone = _line(points)
     for part, style in ((line, {"ls": "--"}), (alone, {"ls": "none", "mfc": "white", "ms": 9})):
         time, wrong = _xy(part, "wrong")
         axes.plot(time, [100 * w for w in wrong], color=color, marker=marker, **style)
 
 
-def _xy(points, key):
+def _xy(points: list[dict[str, Any]], key: str) -> tuple[list[float], list[float]]:
     return [point["ms"] for point in points], [point[key] for point in points]
 
 
 # ---- scaling and budgets
 
 
-def _draw_image_scaling(records):
+def _draw_image_scaling(records: list[dict[str, Any]]) -> dict[str, Figure]:
     figure, axes = _figure(7, 4)
     for record, (color, marker) in zip(records, _CYCLE * len(records)):
         points = record["points"]
@@ -314,7 +321,7 @@ def _draw_image_scaling(records):
     return {"scaling-image": figure}
 
 
-def _draw_volume_scaling(records):
+def _draw_volume_scaling(records: list[dict[str, Any]]) -> dict[str, Figure]:
     figure, axes = _figure(7, 4)
     for record, (color, marker) in zip(records, _CYCLE * len(records)):
         points = record["points"]
@@ -326,7 +333,14 @@ def _draw_volume_scaling(records):
     return {"scaling-volume": figure}
 
 
-def _power_series(axes, x, points, label, color, marker):
+def _power_series(
+    axes: Axes,
+    x: Sequence[float],
+    points: list[dict[str, Any]],
+    label: str,
+    color: str,
+    marker: str,
+) -> None:
     axes.plot(x, [p["time"]["mean"] for p in points], color=color, marker=marker, label=label)
     axes.set_xscale("log")
     axes.set_yscale("log")
@@ -335,7 +349,7 @@ def _power_series(axes, x, points, label, color, marker):
     axes.set_ylabel("ms to the complete image, mean")
 
 
-def _draw_budget(records):
+def _draw_budget(records: list[dict[str, Any]]) -> dict[str, Figure]:
     figure, axes = _figure(7, 4)
     for record, (color, marker) in zip(records, _CYCLE * len(records)):
         points = record["points"]
@@ -354,11 +368,11 @@ def _draw_budget(records):
 # ---- long use
 
 
-def _draw_soak(records):
+def _draw_soak(records: list[dict[str, Any]]) -> dict[str, Figure]:
     return {_file("soak", record): _memory_over_frames(record) for record in records}
 
 
-def _memory_over_frames(record):
+def _memory_over_frames(record: dict[str, Any]) -> Figure:
     samples, warm_up = record["samples"], record["warm_up"]
     figure, (upper, lower) = _figure(8, 5.5, nrows=2, sharex=True)
     for axes, key, label, color in (

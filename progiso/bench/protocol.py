@@ -7,7 +7,9 @@ else measured; for the counts of blocks; and without speculation.
 from __future__ import annotations
 
 import statistics
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -15,8 +17,9 @@ from ..geometry import samples_of
 from ..measure.isosurface import cache_bytes, other_bytes, stage_times
 from ..measure.machine import available_bytes
 from .explicit import BLOCK_BYTES, BlockRanges, measure_mesh
-from .fields import decompressed, gib
+from .fields import Field, decompressed, gib
 from .orbit import render_orbit, times
+from .settings import Settings
 from .timing import summary
 
 #: Meshes of at most so many of the isovalues are made, evenly chosen.
@@ -29,7 +32,7 @@ _BYTES_PER_PIXEL = 32
 _EXTRACTION_VOLUMES = 2.5
 
 
-def measure_protocol(field, settings):
+def measure_protocol(field: Field, settings: Settings) -> dict[str, Any]:
     """Run the protocol on a field.
 
     Parameters
@@ -64,11 +67,11 @@ def measure_protocol(field, settings):
     }
 
 
-def _passes(images):
+def _passes(images: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return [one for image in images for one in image["passes"]]
 
 
-def _table2(images, blocks, size):
+def _table2(images: list[dict[str, Any]], blocks: int, size: tuple[int, int]) -> dict[str, float]:
     """The columns of the paper's Table 2, and the time of a pass."""
     passes, pixels = _passes(images), size[0] * size[1]
     speculation = [p["speculation"] for p in passes]
@@ -80,11 +83,11 @@ def _table2(images, blocks, size):
     }
 
 
-def _mean(values):
+def _mean(values: Sequence[float]) -> float:
     return statistics.fmean(values) if values else 0.0
 
 
-def _memory(memories, field, settings):
+def _memory(memories: list[dict[str, Any]], field: Field, settings: Settings) -> dict[str, Any]:
     """The mapper's memory: means over the images, and the largest."""
     totals = [memory["total"] for memory in memories]
     return {
@@ -98,7 +101,7 @@ def _memory(memories, field, settings):
     }
 
 
-def _by_pass(images):
+def _by_pass(images: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """Means by pass number: time over the images that have such a pass, the rest over all."""
     passes = [image["statistics"]["passes"] for image in images]
     longest = max(len(series) for series in passes)
@@ -119,20 +122,20 @@ def _by_pass(images):
     return rows
 
 
-def _elapsed(series):
+def _elapsed(series: list[dict[str, Any]]) -> float:
     """Milliseconds of the last of some passes."""
     before = series[-2]["elapsed_ms"] if len(series) > 1 else 0.0
     return series[-1]["elapsed_ms"] - before
 
 
-def _stages(images):
+def _stages(images: list[dict[str, Any]]) -> dict[str, float]:
     """Mean milliseconds of an image's stages, over all images."""
     shares = [stage_times(image) for image in images]
     names = dict.fromkeys(name for share in shares for name in share)
     return {name: sum(share.get(name, 0.0) for share in shares) / len(shares) for name in names}
 
 
-def _moved_bytes(images, rate, size):
+def _moved_bytes(images: list[dict[str, Any]], rate: float, size: tuple[int, int]) -> float:
     """The least that an image has to move, on average: what is decoded is read compressed and
     written as float32, what is intersected is read once a pass, and a pixel is written by the
     stages (`_BYTES_PER_PIXEL`).
@@ -143,7 +146,7 @@ def _moved_bytes(images, rate, size):
     return (decoded + intersected) / len(images) + _BYTES_PER_PIXEL * size[0] * size[1]
 
 
-def _active(images, blocks):
+def _active(images: list[dict[str, Any]], blocks: int) -> dict[str, list[float]]:
     """Active blocks of each image, in percent of the volume's: mean and largest over its passes."""
     shares = [[100 * p["active_blocks"] / blocks for p in image["passes"]] for image in images]
     return {
@@ -152,7 +155,7 @@ def _active(images, blocks):
     }
 
 
-def _measure_explicit(field, settings):
+def _measure_explicit(field: Field, settings: Settings) -> dict[str, Any]:
     """Blocks that explicit extraction decodes at every isovalue, and meshes at some."""
     if settings.no_mesh_of(field):
         return {"left_out": settings.no_mesh_of(field)}

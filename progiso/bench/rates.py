@@ -6,21 +6,29 @@ topology of FlyingEdges' mesh against that of the mesh without compression.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from ..compression import compress, decompress
 from ..geometry import samples_of
 from ..measure.agreement import depth_error
 from ..measure.isosurface import Isosurface
 from ..measure.topology import topology
+from ..oracle.caster import Cast
 from .errors import cast_uncompressed, of_one_image
-from .fields import plain
+from .fields import Field, plain
+from .settings import Settings
 
 #: Bits per sample.
 RATES = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 24.0, 32.0)
 
 
-def measure_rates(field, settings, rates=RATES):
+def measure_rates(
+    field: Field, settings: Settings, rates: Sequence[float] = RATES
+) -> dict[str, Any]:
     """Measure what the rates make of one image of a field, and of its surface.
 
     Parameters
@@ -41,7 +49,7 @@ def measure_rates(field, settings, rates=RATES):
     return of_one_image(field, settings, lambda: _measure(field, settings, rates))
 
 
-def _measure(field, settings, rates):
+def _measure(field: Field, settings: Settings, rates: Sequence[float]) -> dict[str, Any]:
     image, isovalue = plain(field), settings.isovalues_of(field)[0]
     expected = cast_uncompressed(field, settings)
     values = samples_of(image)
@@ -54,7 +62,9 @@ def _measure(field, settings, rates):
     }
 
 
-def _point(image, isovalue, settings, expected, rate):
+def _point(
+    image: vtkImageData, isovalue: float, settings: Settings, expected: Cast, rate: float
+) -> dict[str, Any]:
     volume = compress(image, rate=rate)
     view = Isosurface(volume, isovalue, settings.size)
     view.render_from(settings.cameras(image)[0])
@@ -69,7 +79,7 @@ def _point(image, isovalue, settings, expected, rate):
     }
 
 
-def _sample_errors(decoded, values):
+def _sample_errors(decoded: np.ndarray, values: np.ndarray) -> dict[str, float]:
     """Largest and root mean square error of the samples, slice by slice."""
     largest, squares = 0.0, 0.0
     for ours, theirs in zip(decoded, values):

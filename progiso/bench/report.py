@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -22,7 +25,11 @@ _NO_GOAL = ""
 _MET, _NOT_JUDGED = "met", "*not judged, busy*"
 
 
-def write_markdown(document, path, plots=None):
+def write_markdown(
+    document: dict[str, Any],
+    path: str | os.PathLike[str],
+    plots: dict[str, list[str]] | None = None,
+) -> Path:
     """Write results as Markdown.
 
     Parameters
@@ -43,7 +50,7 @@ def write_markdown(document, path, plots=None):
     return path
 
 
-def markdown(document, plots):
+def markdown(document: dict[str, Any], plots: dict[str, list[str]]) -> str:
     """Results as Markdown; parameters as in `write_markdown`.
 
     Returns
@@ -51,7 +58,7 @@ def markdown(document, plots):
     str
     """
     report = _Report(document["machine"])
-    body = []
+    body: list[str] = []
     for kind, section in _SECTIONS.items():
         records = document["measurements"].get(kind, [])
         if records:
@@ -64,31 +71,31 @@ def markdown(document, plots):
 class _Report:
     """The machine, and all verdicts so far."""
 
-    def __init__(self, machine):
+    def __init__(self, machine: dict[str, Any]) -> None:
         self.machine = machine
-        self.verdicts = []
+        self.verdicts: list[tuple[dict[str, Any], goals.Verdict]] = []
 
-    def goal(self, record, *verdicts):
+    def goal(self, record: dict[str, Any], *verdicts: goals.Verdict | None) -> str:
         """A cell that judges figures; None among the verdicts are figures without a goal."""
         found = [verdict for verdict in verdicts if verdict is not None]
         self.verdicts += [(record, verdict) for verdict in found]
         texts = (f"{verdict.goal}: {self.judge(record, verdict)}" for verdict in found)
         return "; ".join(texts) or _NO_GOAL
 
-    def judge(self, record, verdict):
+    def judge(self, record: dict[str, Any], verdict: goals.Verdict) -> str:
         """What is said of a goal: times that other processes disturbed are not judged."""
         if verdict.timed and goals.is_busy(self.machine, record):
             return _NOT_JUDGED
         return _MET if verdict.met else "**not met**"
 
 
-def _of(record):
+def _of(record: dict[str, Any]) -> str:
     """What a record is of."""
     name = record.get("field") or f"gyroid, {_surface(record)}"
     return f"{name}, {pixels(record['size'])}"
 
 
-def _heading(document):
+def _heading(document: dict[str, Any]) -> list[str]:
     lines = [
         f"# Benchmarks: {document['machine']['gl']}",
         "",
@@ -108,7 +115,7 @@ def _heading(document):
     return lines + table(["command", "commit", "started", "took"], rows)
 
 
-def _about_times(document):
+def _about_times(document: dict[str, Any]) -> list[str]:
     """What times are, and whether they can be relied on; nothing where there are none."""
     measured = document["measurements"]
     records = [r for kind, records in measured.items() if kind not in _UNTIMED for r in records]
@@ -128,7 +135,7 @@ def _about_times(document):
     ]
 
 
-def _summary(report):
+def _summary(report: _Report) -> list[str]:
     if not report.verdicts:
         return []
     judged = [report.judge(record, verdict) for record, verdict in report.verdicts]
@@ -152,7 +159,7 @@ def _summary(report):
 # ---- side by side
 
 
-def _peers(report, records):
+def _peers(report: _Report, records: list[dict[str, Any]]) -> list[str]:
     headers = [
         "field", "peer", "file to first image", "extraction", "first frame",
         "later frames: mean", "median", "min", "GPU memory", "main memory", "triangles",
@@ -176,7 +183,7 @@ def _peers(report, records):
     ]
 
 
-def _peer_rows(report, record):
+def _peer_rows(report: _Report, record: dict[str, Any]) -> Iterator[list[str]]:
     by_peer = {row["peer"]: row for row in record["rows"]}
     for peer, row in by_peer.items():
         name = _of(record) if peer == Isosurface.label else ""
@@ -201,12 +208,12 @@ def _peer_rows(report, record):
         ]
 
 
-def _gpu_memory(row):
+def _gpu_memory(row: dict[str, Any]) -> str:
     seen = bytes_(row["gpu_bytes"])
     return f"{seen} ({bytes_(row['mapper_bytes'])})" if "mapper_bytes" in row else seen
 
 
-def _literature(machine, record):
+def _literature(machine: dict[str, Any], record: dict[str, Any]) -> str:
     figure = literature(goals.machine_kind(machine), record["field"], record["size"])
     if figure is None:
         return "–"
@@ -215,7 +222,7 @@ def _literature(machine, record):
     return f"{milliseconds(figure.ms)}{strong}{memory}"
 
 
-def _peer_goals(report, record, by_peer):
+def _peer_goals(report: _Report, record: dict[str, Any], by_peer: dict[str, dict[str, Any]]) -> str:
     machine, size, field = report.machine, record["size"], record["field"]
     ours, mapper = by_peer[Isosurface.label], by_peer.get(VolumeMapper.label, {"failed": ""})
     voxels, mean = parse_field(field).voxels, ours["later"]["mean"]
@@ -237,7 +244,7 @@ def _peer_goals(report, record, by_peer):
 # ---- the paper's protocol
 
 
-def _protocol(report, records):
+def _protocol(report: _Report, records: list[dict[str, Any]]) -> list[str]:
     return [
         "## The paper's protocol",
         "",
@@ -251,7 +258,7 @@ def _protocol(report, records):
     ]
 
 
-def _protocol_times(report, records):
+def _protocol_times(report: _Report, records: list[dict[str, Any]]) -> list[str]:
     headers = [
         "field", "isovalues × positions", "first frame", "complete image: mean", "median", "min",
         "max", "without speculation: mean", "goal",
@@ -273,7 +280,7 @@ def _protocol_times(report, records):
     return table(headers, rows)
 
 
-def _table2(records):
+def _table2(records: list[dict[str, Any]]) -> list[str]:
     headers = [
         "field", "passes, median", "blocks visible per pass", "speculation, median", "utilisation",
     ]  # fmt: skip
@@ -290,14 +297,14 @@ def _table2(records):
     return ["Passes (the paper's Table 2):", "", *table(headers, rows)]
 
 
-def _stages(report, records):
+def _stages(report: _Report, records: list[dict[str, Any]]) -> list[str]:
     """Where the time goes, the longest stage of all first."""
     names = dict.fromkeys(name for record in records for name in record["stage_ms"])
     if not names:
         return []
     total = {name: sum(r["stage_ms"].get(name, 0.0) for r in records) for name in names}
-    ordered = sorted(names, key=total.get, reverse=True)
-    bandwidth = BANDWIDTH.get(goals.machine_kind(report.machine))
+    ordered = sorted(names, key=lambda name: total[name], reverse=True)
+    bandwidth = BANDWIDTH.get(goals.machine_kind(report.machine) or "")
     rows = [
         [
             _of(record),
@@ -316,7 +323,7 @@ def _stages(report, records):
     ]
 
 
-def _tables34(report, records):
+def _tables34(report: _Report, records: list[dict[str, Any]]) -> list[str]:
     headers = [
         "field", "total", "cache", "explicit: stream + blocks + mesh", "reduction",
         "explicit: blocks", "reduction", "triangles", "mesh", "FlyingEdges' peak",
@@ -344,7 +351,7 @@ def _tables34(report, records):
     ]
 
 
-def _explicit_cells(memory, explicit):
+def _explicit_cells(memory: dict[str, Any], explicit: dict[str, Any]) -> list[str]:
     if "left_out" in explicit:
         return [explicit["left_out"], *[""] * 6]
     meshes = explicit["meshes"]
@@ -365,7 +372,7 @@ def _explicit_cells(memory, explicit):
 # ---- first images and small moves
 
 
-def _latency(report, records):
+def _latency(report: _Report, records: list[dict[str, Any]]) -> list[str]:
     headers = [
         "field", "cold: mean (median, min)", "moved by 2°: mean (median, min)",
         "first pass: mean (median, min)", "goal",
@@ -397,7 +404,7 @@ def _latency(report, records):
     ]
 
 
-def _mean_and_more(time):
+def _mean_and_more(time: dict[str, Any]) -> str:
     median, least = milliseconds(time["median"]), milliseconds(time["min"])
     return f"{milliseconds(time['mean'])} ({median}, {least})"
 
@@ -405,7 +412,7 @@ def _mean_and_more(time):
 # ---- error against run time
 
 
-def _errors(report, records):
+def _errors(report: _Report, records: list[dict[str, Any]]) -> list[str]:
     lines = [
         "## Depth error against run time",
         "",
@@ -421,7 +428,7 @@ def _errors(report, records):
     return lines
 
 
-def _error_table(report, record):
+def _error_table(report: _Report, record: dict[str, Any]) -> list[str]:
     if "left_out" in record:
         return [f"{_of(record)}: {record['left_out']}.", ""]
     resolution = ", ".join(
@@ -457,7 +464,7 @@ def _error_table(report, record):
 # ---- rates
 
 
-def _rates(_report, records):
+def _rates(_report: _Report, records: list[dict[str, Any]]) -> list[str]:
     records = [record for record in records if "left_out" not in record]
     lines = [
         "## Rates",
@@ -489,7 +496,7 @@ _RATE_GOALS = {
 }
 
 
-def _least_rates(record):
+def _least_rates(record: dict[str, Any]) -> list[str]:
     points, exact = record["points"], record["topology"]
     cells = [record["field"].rsplit("-r", 1)[0]]
     for reached in _RATE_GOALS.values():
@@ -499,7 +506,7 @@ def _least_rates(record):
     return cells
 
 
-def _rate_table(record):
+def _rate_table(record: dict[str, Any]) -> list[str]:
     low, high = record["range"]
     exact = record["topology"]
     rows = [
@@ -527,19 +534,19 @@ def _rate_table(record):
     ]
 
 
-def _part(value, whole):
+def _part(value: float, whole: float) -> str:
     """A part of a whole, short."""
     return f"{value / whole:.1e}" if value else "0"
 
 
-def _surface_cells(point):
+def _surface_cells(point: dict[str, Any]) -> list[str]:
     return [str(point["components"]), str(point["genus"]), str(point["triangles"])]
 
 
 # ---- scaling and budgets
 
 
-def _image_scaling(report, records):
+def _image_scaling(report: _Report, records: list[dict[str, Any]]) -> list[str]:
     rows = [
         [
             record["field"] if i == 0 else "",
@@ -569,7 +576,7 @@ def _image_scaling(report, records):
     ]
 
 
-def _image_goals(report, record, point):
+def _image_goals(report: _Report, record: dict[str, Any], point: dict[str, Any]) -> str:
     seen = {**record, "size": point["size"]}
     mean = point["time"]["mean"]
     voxels = parse_field(record["field"]).voxels
@@ -580,11 +587,11 @@ def _image_goals(report, record, point):
     )
 
 
-def _surface(record):
+def _surface(record: dict[str, Any]) -> str:
     return "growing surface" if record["grows"] else "same surface"
 
 
-def _volume_scaling(report, records):
+def _volume_scaling(report: _Report, records: list[dict[str, Any]]) -> list[str]:
     lines = ["## Scaling with volume size", ""]
     for record in records:
         rows = [
@@ -618,7 +625,7 @@ def _volume_scaling(report, records):
     return lines
 
 
-def _budget(report, records):
+def _budget(report: _Report, records: list[dict[str, Any]]) -> list[str]:
     rows = []
     for record in records:
         free = record["free"]
@@ -634,7 +641,7 @@ def _budget(report, records):
     return ["## Memory budgets", "", *table(headers, rows)]
 
 
-def _budget_cells(point):
+def _budget_cells(point: dict[str, Any]) -> list[str]:
     times = (milliseconds(point["time"][key]) for key in ("mean", "median", "min"))
     sizes = bytes_(point["beside"]), bytes_(point["total"])
     return [*sizes, number(point["passes"]), *times]
@@ -643,7 +650,7 @@ def _budget_cells(point):
 # ---- long use
 
 
-def _soak(report, records):
+def _soak(report: _Report, records: list[dict[str, Any]]) -> list[str]:
     names = {
         "rss": "main memory of the process",
         "gpu": "GPU memory in use (nvidia-smi)",

@@ -8,17 +8,20 @@ the logarithms.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from ..measure.isosurface import other_bytes
 from .fields import Field, TooLarge
 from .orbit import render_orbit, times
+from .settings import Settings
 from .timing import summary
 
 #: Samples along x, y and z; the last is the paper's largest volume.
-VOLUME_SIZES = (*((n,) * 3 for n in (64, 128, 256, 512, 1024)), (2048, 2048, 1920))
+VOLUME_SIZES = (*((n, n, n) for n in (64, 128, 256, 512, 1024)), (2048, 2048, 1920))
 
 #: Periods per side where the surface is the same, and samples per period where it grows.
 FIXED_K, SAMPLES_PER_PERIOD = 6.0, 128 / 3
@@ -27,7 +30,7 @@ FIXED_K, SAMPLES_PER_PERIOD = 6.0, 128 / 3
 RATE = 2.0
 
 
-def measure_image_scaling(field, settings):
+def measure_image_scaling(field: Field, settings: Settings) -> dict[str, Any]:
     """Measure a field at several image sizes.
 
     Parameters
@@ -56,7 +59,9 @@ def measure_image_scaling(field, settings):
     }
 
 
-def measure_volume_scaling(grows, settings, sizes=VOLUME_SIZES):
+def measure_volume_scaling(
+    grows: bool, settings: Settings, sizes: Sequence[tuple[int, int, int]] = VOLUME_SIZES
+) -> dict[str, Any]:
     """Measure the gyroid at several sizes.
 
     Parameters
@@ -102,19 +107,19 @@ def measure_volume_scaling(grows, settings, sizes=VOLUME_SIZES):
     }
 
 
-def _gyroid(dimensions, grows):
+def _gyroid(dimensions: tuple[int, int, int], grows: bool) -> Field:
     k = round(max(dimensions) / SAMPLES_PER_PERIOD, 2) if grows else FIXED_K
     return Field("gyroid", dimensions, RATE, k)
 
 
-def _measure(field, settings):
+def _measure(field: Field, settings: Settings) -> dict[str, Any]:
     """Times of the orbit's images, and bytes of GPU memory beside payload and cache."""
     _, images = render_orbit(field, settings)
     memory = images[-1]["statistics"]["memory"]
     return {"time": summary(times(images)), "other_bytes": other_bytes(memory)}
 
 
-def exponent(x, y):
+def exponent(x: Sequence[float], y: Sequence[float]) -> float | None:
     """Exponent of the power law that fits best.
 
     Parameters
@@ -137,7 +142,7 @@ def exponent(x, y):
     return float(np.polyfit(np.log(x), np.log(y), 1)[0])
 
 
-def slope(x, y):
+def slope(x: Sequence[float], y: Sequence[float]) -> float | None:
     """Slope of the line that fits best.
 
     Parameters

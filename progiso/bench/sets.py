@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 from .budget import measure_budget
 from .errors import measure_errors
-from .fields import parse_field
+from .fields import Field, parse_field
 from .latency import measure_latency
 from .peers import measure_peers
 from .protocol import measure_protocol
 from .rates import measure_rates
 from .scaling import measure_image_scaling, measure_volume_scaling
-from .settings import PEERS
+from .settings import PEERS, Settings
 from .soak import measure_soak
 
 SCANS = ("ct-cranium-r8", "mri-brain-r8")
 SMALL = ("marschner-lobb-128-k6-r4", "gyroid-256-k6-r2")
 LARGE = ("gyroid-512-k12-r4", "gyroid-1024-k24-r4", "gyroid-1024-k24-r2", "gyroid-1024-k6-r2")
 QUICK = (*SCANS, SMALL[0])
+
+#: Kind of a record, what it is of, and the function that makes it.
+Step = tuple[str, str, Callable[[], dict[str, Any]]]
 
 
 @dataclass(frozen=True)
@@ -37,8 +42,8 @@ class Defaults:
     """
 
     description: str
-    fields: tuple
-    isovalues: object
+    fields: tuple[str, ...]
+    isovalues: int | str
     positions: int
 
 
@@ -59,11 +64,11 @@ SETS = {
 
 #: What `quick` leaves out of the longer series.
 _QUICK_IMAGES = ((640, 360), (1280, 720))
-_QUICK_VOLUMES = ((64,) * 3, (128,) * 3, (256,) * 3)
+_QUICK_VOLUMES = tuple((n, n, n) for n in (64, 128, 256))
 _QUICK_RATES, _QUICK_DISTANCES = (2.0, 4.0, 8.0, 16.0), (0.25, 0.5, 1.0)
 
 
-def steps(name, fields, settings):
+def steps(name: str, fields: Sequence[str], settings: Settings) -> list[Step]:
     """The measurements of a set, in order.
 
     Parameters
@@ -82,11 +87,13 @@ def steps(name, fields, settings):
     return _STEPS[name]([parse_field(field) for field in fields], settings)
 
 
-def _each(kind, measure, fields, *arguments):
+def _each(
+    kind: str, measure: Callable[..., dict[str, Any]], fields: Sequence[Field], *arguments: Any
+) -> list[Step]:
     return [(kind, field.name, partial(measure, field, *arguments)) for field in fields]
 
 
-def _paper(fields, settings):
+def _paper(fields: Sequence[Field], settings: Settings) -> list[Step]:
     by_field = zip(
         _each("protocol", measure_protocol, fields, settings),
         _each("latency", measure_latency, fields, settings),
@@ -94,7 +101,7 @@ def _paper(fields, settings):
     return [step for pair in by_field for step in pair]
 
 
-def _scaling(fields, settings):
+def _scaling(fields: Sequence[Field], settings: Settings) -> list[Step]:
     volumes = [
         ("volume_scaling", "same surface", partial(measure_volume_scaling, False, settings)),
         ("volume_scaling", "growing surface", partial(measure_volume_scaling, True, settings)),
@@ -102,9 +109,10 @@ def _scaling(fields, settings):
     return _each("image_scaling", measure_image_scaling, fields, settings) + volumes
 
 
-def _quick(fields, settings):
+def _quick(fields: Sequence[Field], settings: Settings) -> list[Step]:
     fixed = replace(settings, isovalues=PEERS, images=_QUICK_IMAGES)
-    small = replace(fixed, size=tuple(max(1, n // 2) for n in settings.size))
+    width, height = settings.size
+    small = replace(fixed, size=(max(1, width // 2), max(1, height // 2)))
     volumes = partial(measure_volume_scaling, False, fixed, _QUICK_VOLUMES)
     return [
         *_each("peers", measure_peers, fields, fixed),
@@ -115,7 +123,7 @@ def _quick(fields, settings):
     ]
 
 
-_STEPS = {
+_STEPS: dict[str, Callable[[Sequence[Field], Settings], list[Step]]] = {
     "quick": _quick,
     "paper": _paper,
     "scaling": _scaling,

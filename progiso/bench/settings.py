@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional
+from typing import Any
 
-from ..camera import orbit_camera
+from vtkmodules.vtkCommonDataModel import vtkImageData
+
+from ..camera import Camera, orbit_camera
+from .fields import Field
 
 #: Widths and heights that the scaling with image size goes through.
 IMAGE_SIZES = ((640, 360), (1280, 720), (1920, 1080), (3840, 2160))
@@ -40,32 +43,32 @@ class Settings:
         Of the long run.
     """
 
-    size: tuple
-    isovalues: object
+    size: tuple[int, int]
+    isovalues: int | str
     positions: int
     repeat: int = 1
     seed: int = 0
-    largest: Optional[int] = None
-    images: tuple = IMAGE_SIZES
-    largest_mesh: Optional[int] = None
+    largest: int | None = None
+    images: tuple[tuple[int, int], ...] = IMAGE_SIZES
+    largest_mesh: int | None = None
     frames: int = 10_000
 
-    def isovalues_of(self, field):
+    def isovalues_of(self, field: Field) -> list[float]:
         """The isovalues that a field is rendered at, a list of float."""
-        if self.isovalues == PEERS:
+        if isinstance(self.isovalues, str):
             return list(field.isovalues)
         return field.random_isovalues(self.isovalues, self.seed)
 
-    def no_mesh_of(self, field):
+    def no_mesh_of(self, field: Field) -> str | None:
         """Why no mesh is made of a field; None where one is."""
         large = self.largest_mesh is not None and max(field.dimensions) > self.largest_mesh
         return f"no meshes of volumes larger than {self.largest_mesh}" if large else None
 
-    def cameras(self, image):
+    def cameras(self, image: vtkImageData) -> list[Camera]:
         """The orbit's cameras around an image, a list of `progiso.Camera`."""
         return [orbit_camera(image, i, self.positions) for i in range(self.positions)]
 
-    def heading(self, field):
+    def heading(self, field: Field) -> dict[str, Any]:
         """What every record begins with: the field and how it was seen."""
         return {
             "field": field.name,

@@ -13,8 +13,10 @@ from __future__ import annotations
 
 import gc
 import os
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkPlane
@@ -26,7 +28,8 @@ from ..camera import Camera, orbit_camera
 from ..isosurface import make_isosurface
 from ..measure.isosurface import Isosurface
 from ..measure.machine import gpu_bytes, resident_bytes
-from .fields import compressed, decompressed
+from .fields import Field, compressed, decompressed
+from .settings import Settings
 
 #: Samples of a run, and the part of it after which they count: until then shaders are compiled.
 SAMPLES, WARM_UP = 400, 0.25
@@ -61,7 +64,7 @@ _COLORS = ((0.9, 0.3, 0.2), (0.3, 0.8, 0.4), (0.3, 0.4, 0.9))
 _REST = "several"
 
 
-def measure_soak(field, settings):
+def measure_soak(field: Field, settings: Settings) -> dict[str, Any]:
     """Render frames of random changes, and watch the memory.
 
     Parameters
@@ -101,7 +104,7 @@ def measure_soak(field, settings):
     }
 
 
-def growth(samples, key, warm_up):
+def growth(samples: dict[str, Any], key: str, warm_up: int) -> float | None:
     """Slope of a column of samples after the warm-up: the median of those between all its pairs.
 
     Parameters
@@ -133,7 +136,7 @@ def growth(samples, key, warm_up):
 
 
 @contextmanager
-def _gl_errors_counted():
+def _gl_errors_counted() -> Iterator[None]:
     """Have mappers that are made meanwhile count OpenGL's errors."""
     before = os.environ.get("PROGISO_GL_DEBUG")
     os.environ["PROGISO_GL_DEBUG"] = "1"
@@ -149,10 +152,10 @@ def _gl_errors_counted():
 class _Walk:
     """A view, and the random changes that are made to it."""
 
-    def __init__(self, field, size, seed):
+    def __init__(self, field: Field, size: tuple[int, int], seed: int) -> None:
         self._random = np.random.default_rng(seed)
         self._low, self._high = min(field.isovalues), max(field.isovalues)
-        self._size = tuple(size)
+        self._size = size
         half = replace(field, rate=field.rate / 2)
         self._volumes = [compressed(field), compressed(half)]
         if field.voxels <= LARGEST_PLAIN:
@@ -170,7 +173,7 @@ class _Walk:
         self._least = 0
         self._warm_up()
 
-    def _make_obstacle(self):
+    def _make_obstacle(self) -> vtkActor:
         """A ball in the middle of the volume."""
         source, mapper, actor = vtkSphereSource(), vtkPolyDataMapper(), vtkActor()
         radius = np.linalg.norm(np.subtract(self._rest.position, self._rest.focal_point))
@@ -180,7 +183,7 @@ class _Walk:
         actor.SetMapper(mapper)
         return actor
 
-    def _warm_up(self):
+    def _warm_up(self) -> None:
         """Render every look once, at full size: decoded as a whole, with a cache, and within the
         least memory that any of them can be rendered with."""
         for whole, limited in ((True, False), (False, False), (False, True)):
@@ -195,7 +198,7 @@ class _Walk:
 
     # ---- a frame
 
-    def step(self):
+    def step(self) -> None:
         """Change at random, and render."""
         for what, chance in CHANCES.items():
             if self._random.random() < chance:
@@ -209,7 +212,7 @@ class _Walk:
             raise RuntimeError("an image is not complete")
         self._peak = max(self._peak, self.view.mapper.GetStatistics().GetTotalBytes())
 
-    def sample(self, frame):
+    def sample(self, frame: int) -> dict[str, Any]:
         """Return to rest, and look at the memory: a row of `measure_soak`'s samples."""
         self._change_rest()
         self.view.render_from(self._rest)
@@ -224,14 +227,14 @@ class _Walk:
             "peak": peak,
         }
 
-    def close(self):
+    def close(self) -> int:
         """Give everything back; return the OpenGL errors of all mappers."""
         for prop in (self.view.prop, self._keeper):
             self._errors += prop.GetMapper().GetNumberOfGLErrors()
         self.view.close()
         return self._errors
 
-    def _random_camera(self):
+    def _random_camera(self) -> Camera:
         """Somewhere around the volume, or in it."""
         direction = self._random.normal(size=3)
         offset = np.subtract(self._rest.position, self._rest.focal_point)
@@ -243,41 +246,41 @@ class _Walk:
 
     # ---- changes
 
-    def _change_rest(self):
+    def _change_rest(self) -> None:
         self.view.window.SetSize(*self._size)
         self.view.mapper.SetInputData(self._volumes[0])
         self.view.mapper.SetMemoryBudget(0)
         self.view.mapper.SetDecodeWholeVolume(True)
         self._look(_REST)
 
-    def _change_size(self):
+    def _change_size(self) -> None:
         parts = self._random.uniform(0.1, 1.0, 2)
         self.view.window.SetSize(*(max(1, int(n * part)) for n, part in zip(self._size, parts)))
 
-    def _change_look(self):
+    def _change_look(self) -> None:
         self._look(self._random.choice(list(_LOOKS)))
 
-    def _change_speculation(self):
+    def _change_speculation(self) -> None:
         self.view.mapper.SetSpeculationLimit(int(self._random.choice([1, 8, 64])))
 
-    def _change_budget(self):
+    def _change_budget(self) -> None:
         budget = int(self._least * self._random.uniform(1, 3))
         self.view.mapper.SetMemoryBudget(budget if self._random.random() < 0.7 else 0)
 
-    def _change_whole(self):
+    def _change_whole(self) -> None:
         self.view.mapper.SetDecodeWholeVolume(not self.view.mapper.GetDecodeWholeVolume())
 
-    def _change_empty(self):
+    def _change_empty(self) -> None:
         self.view.mapper.EmptyCache()
 
-    def _change_volume(self):
+    def _change_volume(self) -> None:
         number = self._random.integers(len(self._volumes))
         self.view.mapper.SetInputData(self._volumes[number])
 
-    def _change_release(self):
+    def _change_release(self) -> None:
         self.view.prop.ReleaseGraphicsResources(self.view.window)
 
-    def _change_mapper(self):
+    def _change_mapper(self) -> None:
         self._errors += self.view.mapper.GetNumberOfGLErrors()
         self.view.renderer.RemoveViewProp(self.view.prop)
         self.view.prop = make_isosurface(self._volumes[0], self._low)
@@ -285,7 +288,7 @@ class _Walk:
         self.view.renderer.AddViewProp(self.view.prop)
         self._look(_REST)
 
-    def _look(self, name):
+    def _look(self, name: str) -> None:
         count, opacity, lit, colored, cut = _LOOKS[name]
         property_, mapper = self.view.prop.GetProperty(), self.view.mapper
         property_.GetIsoSurfaceValues().SetNumberOfContours(count)

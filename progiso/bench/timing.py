@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import statistics
+from collections.abc import Sequence
+from typing import Any
 
 
-def summary(milliseconds):
+def summary(milliseconds: Sequence[float]) -> dict[str, Any]:
     """Median, mean and extremes of times.
 
     Parameters

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction
+import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPiecewiseFunction
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction, vtkVolume, vtkVolumeProperty
 from vtkmodules.vtkRenderingVolume import vtkGPUVolumeRayCastMapper
 
@@ -34,7 +35,13 @@ class VolumeMapper(View):
 
     label = "VTK isosurface mapper"
 
-    def __init__(self, image, isovalue, size, sample_distance=None):
+    def __init__(
+        self,
+        image: vtkImageData,
+        isovalue: float,
+        size: tuple[int, int],
+        sample_distance: float | None = None,
+    ) -> None:
         self.mapper = vtkGPUVolumeRayCastMapper()
         self.mapper.SetInputData(image)
         self.mapper.SetBlendModeToIsoSurface()
@@ -46,11 +53,11 @@ class VolumeMapper(View):
         prop.SetProperty(_opaque_property(image, isovalue))
         super().__init__(prop, size)
 
-    def set_isovalue(self, isovalue):
+    def set_isovalue(self, isovalue: float) -> None:
         """Show another isovalue from the next render on."""
         self.prop.GetProperty().GetIsoSurfaceValues().SetValue(0, isovalue)
 
-    def depth(self):
+    def depth(self) -> np.ndarray:
         """Render once more; distances along the rays, see `DepthRange.read`."""
         depths = DepthRange.of(self)
         hit = "progisoHit.x >= 0.0"
@@ -66,12 +73,12 @@ class VolumeMapper(View):
         shader.ClearAllFragmentShaderReplacements()
         return depths.read(self)
 
-    def depth_resolution(self):
+    def depth_resolution(self) -> float:
         """Resolution of `depth` in world units."""
         return DepthRange.of(self).resolution
 
 
-def _opaque_property(image, isovalue):
+def _opaque_property(image: vtkImageData, isovalue: float) -> vtkVolumeProperty:
     """White, shaded and opaque at every value."""
     low, high = image.GetScalarRange()
     color, opacity = vtkColorTransferFunction(), vtkPiecewiseFunction()

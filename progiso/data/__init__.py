@@ -12,7 +12,9 @@ Volumes that exceed memory or disk come compressed, see `compressed`.
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 from .catalogue import SCANS, fetch_scan
 from .generators import GENERATORS, generate, generate_compressed
@@ -20,7 +22,7 @@ from .generators import GENERATORS, generate, generate_compressed
 __all__ = ["GENERATORS", "SCANS", "cache_folder", "compressed", "fetch"]
 
 
-def cache_folder():
+def cache_folder() -> Path:
     """Folder where volumes are kept, created when it is missing.
 
     Returns
@@ -42,7 +44,12 @@ def cache_folder():
     return folder
 
 
-def fetch(name, folder=None, progress=None, **options):
+def fetch(
+    name: str,
+    folder: str | os.PathLike[str] | None = None,
+    progress: Callable[[float], None] | None = None,
+    **options: Any,
+) -> Path:
     """Get a volume by name, fetched or generated when it is not in the cache yet.
 
     Parameters
@@ -85,7 +92,14 @@ def fetch(name, folder=None, progress=None, **options):
     raise ValueError(f"there is no volume named '{name}'; there are: {known}")
 
 
-def compressed(name, size=128, rate=8.0, folder=None, progress=None, **options):
+def compressed(
+    name: str,
+    size: int | Sequence[int] = 128,
+    rate: float = 8.0,
+    folder: str | os.PathLike[str] | None = None,
+    progress: Callable[[float], None] | None = None,
+    **options: Any,
+) -> Path:
     """Get a generated volume as a compressed file, for sizes that exceed memory or disk.
 
     The volume is generated and compressed a few slices at a time. The result is bit for bit that

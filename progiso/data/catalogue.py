@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import plistlib
 import shutil
 import subprocess
 import tarfile
 import tempfile
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable
 
 import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from ..geometry import image_from_array
 from ..io import read, save
@@ -48,19 +50,19 @@ class Scan:
 
     name: str
     description: str
-    dimensions: tuple
-    spacing: tuple
+    dimensions: tuple[int, int, int]
+    spacing: tuple[float, float, float]
     dtype: str
-    isovalues: dict
+    isovalues: dict[str, float]
     package: str
     member: str
     sha256: str
     source: str
     licence: str
-    convert: Callable
+    convert: Callable[[Path], vtkImageData]
 
 
-def fetch_scan(scan, folder):
+def fetch_scan(scan: Scan, folder: str | os.PathLike[str]) -> Path:
     """Fetch a scan as ``.vti``, from the cache where it is there.
 
     Parameters
@@ -96,7 +98,7 @@ def fetch_scan(scan, folder):
     return path
 
 
-def _unpack(package, folder):
+def _unpack(package: str, folder: Path) -> Path:
     """Download a Debian package and unpack it, without installing it."""
     if not (shutil.which("apt-get") and shutil.which("dpkg")):
         raise RuntimeError(f"fetching the Debian package {package} needs apt-get and dpkg")
@@ -115,11 +117,11 @@ def _unpack(package, folder):
     return folder / "unpacked"
 
 
-def _run(command, folder):
+def _run(command: Sequence[str], folder: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
 
 
-def _check(path, scan):
+def _check(path: Path, scan: Scan) -> None:
     """Measurements must be of the same data everywhere."""
     if not path.is_file():
         raise RuntimeError(f"the Debian package {scan.package} no longer holds {scan.member}")
@@ -128,17 +130,24 @@ def _check(path, scan):
         raise RuntimeError(f"{scan.member} of {scan.package} is not the expected file: {digest}")
 
 
-def _read_invesalius(path):
+def _read_invesalius(path: Path) -> vtkImageData:
     """Image of an InVesalius project: a tar.gz of a property list and raw samples."""
     with tarfile.open(path) as archive:
         members = {Path(m.name).name: m for m in archive.getmembers() if m.isfile()}
-        project = plistlib.loads(archive.extractfile(members["main.plist"]).read())
+        project = plistlib.loads(_member(archive, members["main.plist"]))
         matrix = project["matrix"]
-        samples = archive.extractfile(members[matrix["filename"]]).read()
+        samples = _member(archive, members[matrix["filename"]])
     values = np.frombuffer(samples, np.dtype(matrix["dtype"]).newbyteorder("<"))
     image = image_from_array(values, matrix["shape"][::-1], name="HU")
     image.SetSpacing(project["spacing"])
     return image
+
+
+def _member(archive: tarfile.TarFile, member: tarfile.TarInfo) -> bytes:
+    """Read a file of an archive."""
+    file = archive.extractfile(member)
+    assert file is not None  # it is a file, not a folder
+    return file.read()
 
 
 SCANS = {

@@ -9,10 +9,12 @@ and rounded to float32.
 from __future__ import annotations
 
 import math
+import os
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import NormalDist
-from typing import Callable, Optional
+from typing import Any
 
 import numpy as np
 
@@ -20,6 +22,12 @@ from ..io import save
 from ..io.files import atomic_path, check_output
 from ..io.raw import raw_name
 from ..io.slabs import compress_slabs, compute_slabs
+
+#: Coordinates of the samples along x, y and z.
+Axes = Sequence[np.ndarray]
+
+#: Computes the slice of a number, an array of shape (height, width).
+Slices = Callable[[int], np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -38,8 +46,8 @@ class Option:
         What it does.
     """
 
-    default: Optional[float]
-    kind: type
+    default: float | None
+    kind: type[int] | type[float]
     low: float
     high: float
     description: str
@@ -67,12 +75,18 @@ class Generator:
 
     name: str
     description: str
-    isovalues: tuple
-    make: Callable
-    options: dict
+    isovalues: tuple[float, ...]
+    make: Callable[..., Slices]
+    options: dict[str, Option]
 
 
-def generate(generator, folder, size=128, progress=None, **options):
+def generate(
+    generator: Generator,
+    folder: str | os.PathLike[str],
+    size: int | Sequence[int] = 128,
+    progress: Callable[[float], None] | None = None,
+    **options: float,
+) -> Path:
     """Sample a field into a raw float32 file, unless it is there already.
 
     Parameters
@@ -110,7 +124,14 @@ def generate(generator, folder, size=128, progress=None, **options):
     return path
 
 
-def generate_compressed(generator, folder, size=128, rate=8.0, progress=None, **options):
+def generate_compressed(
+    generator: Generator,
+    folder: str | os.PathLike[str],
+    size: int | Sequence[int] = 128,
+    rate: float = 8.0,
+    progress: Callable[[float], None] | None = None,
+    **options: float,
+) -> Path:
     """Sample a field into a compressed ``.zfp`` file, unless it is there already.
 
     The samples are compressed a few slices at a time: neither memory nor disk ever holds them all.
@@ -142,7 +163,9 @@ def generate_compressed(generator, folder, size=128, rate=8.0, progress=None, **
     return path
 
 
-def _sampled(generator, size, options):
+def _sampled(
+    generator: Generator, size: int | Sequence[int], options: dict[str, float]
+) -> tuple[str, tuple[int, int, int], Slices]:
     """A field's name with its options, its dimensions, and the function that computes a slice."""
     dimensions = checked_dimensions(size)
     options = _checked_options(generator, options)
@@ -151,7 +174,7 @@ def _sampled(generator, size, options):
     return "-".join((generator.name, *given)), dimensions, generator.make(axes, **options)
 
 
-def checked_dimensions(size):
+def checked_dimensions(size: int | Sequence[int]) -> tuple[int, int, int]:
     """Three sides from one number or three, each at least 2.
 
     Examples
@@ -162,16 +185,17 @@ def checked_dimensions(size):
     dimensions = tuple(size) if isinstance(size, (tuple, list)) else (size,) * 3
     if len(dimensions) != 3 or any(int(n) != n or n < 2 for n in dimensions):
         raise ValueError(f"size must be one or three whole numbers of at least 2, got {size}")
-    return tuple(int(n) for n in dimensions)
+    x, y, z = (int(n) for n in dimensions)
+    return x, y, z
 
 
-def _digits(value):
+def _digits(value: float) -> str:
     """A number in as few characters as tell it from all others."""
     short = f"{value:g}"
     return short if float(short) == value else repr(value)
 
 
-def _checked_options(generator, given):
+def _checked_options(generator: Generator, given: dict[str, float]) -> dict[str, Any]:
     """Defaults filled in, ranges checked."""
     values = {key: option.default for key, option in generator.options.items()}
     for key, value in given.items():
@@ -188,14 +212,14 @@ def _checked_options(generator, given):
 # ---- closed forms
 
 
-def _sphere(axes):
+def _sphere(axes: Axes) -> Slices:
     """Distance from the centre."""
     x, y, z = axes
     plane = x[None, :] ** 2 + y[:, None] ** 2
     return lambda k: np.sqrt(plane + z[k] ** 2)
 
 
-def _marschner_lobb(axes, k, alpha):
+def _marschner_lobb(axes: Axes, k: float, alpha: float) -> Slices:
     """The signal of Marschner and Lobb (1994); `k` is its frequency f_M."""
     x, y, z = axes
     radius = np.sqrt(x[None, :] ** 2 + y[:, None] ** 2)
@@ -206,13 +230,13 @@ def _marschner_lobb(axes, k, alpha):
 # ---- gyroid with value noise
 
 
-def _gyroid(axes, k, seed):
+def _gyroid(axes: Axes, k: float, seed: int) -> Slices:
     """sin x cos y + sin y cos z + sin z cos x over w = πk, plus 0.35 (N16 + N32/2 + N64/4)."""
     x, y, z = (np.pi * k * a for a in axes)
     sin_x, cos_x, sin_y, cos_y = np.sin(x), np.cos(x), np.sin(y), np.cos(y)
     noise = _value_noise(axes, ((16, 0.35), (32, 0.175), (64, 0.0875)), seed)
 
-    def slice_at(i):
+    def slice_at(i: int) -> np.ndarray:
         field = np.outer(cos_y, sin_x)
         field += (math.cos(z[i]) * sin_y)[:, None]
         field += math.sin(z[i]) * cos_x
@@ -222,7 +246,7 @@ def _gyroid(axes, k, seed):
     return slice_at
 
 
-def _value_noise(axes, octaves, seed):
+def _value_noise(axes: Axes, octaves: Sequence[tuple[int, float]], seed: int) -> Slices:
     """Weighted sum of value noise on lattices of (cells + 1)³ standard normals.
 
     The lattices are drawn one after the other, z slowest. Interpolation along an axis is a sparse
@@ -233,14 +257,14 @@ def _value_noise(axes, octaves, seed):
     weights = [[_fade_weights(axis, c) for axis in axes] for c, _ in octaves]
     along_x = np.vstack([w[0].T for w in weights])
 
-    def slice_at(i):
+    def slice_at(i: int) -> np.ndarray:
         rows = [w[1] @ np.tensordot(w[2][i], lattice, 1) for w, lattice in zip(weights, lattices)]
         return np.hstack(rows) @ along_x
 
     return slice_at
 
 
-def _fade_weights(axis, cells):
+def _fade_weights(axis: np.ndarray, cells: int) -> np.ndarray:
     """Matrix that interpolates values at cell corners at the coordinates, by a quintic fade."""
     position = (axis + 1) / 2 * cells
     cell = np.minimum(position.astype(int), cells - 1)
@@ -254,26 +278,28 @@ def _fade_weights(axis, cells):
 # ---- random waves
 
 
-def _waves(axes, vectors, amplitudes, random):
+def _waves(
+    axes: Axes, vectors: np.ndarray, amplitudes: np.ndarray, random: np.random.Generator
+) -> Slices:
     """Sum of cosine waves of random phase; `vectors` are in periods per volume side."""
     x, y, z = (np.pi * np.outer(a, v) for a, v in zip(axes, vectors.T))
     phases = random.uniform(0, 2 * np.pi, len(vectors))
     along_x = np.vstack([np.cos(x).T, np.sin(x).T])
 
-    def slice_at(i):
+    def slice_at(i: int) -> np.ndarray:
         angle = y + z[i] + phases
         return np.hstack([amplitudes * np.cos(angle), -amplitudes * np.sin(angle)]) @ along_x
 
     return slice_at
 
 
-def _directions(random, count):
+def _directions(random: np.random.Generator, count: int) -> np.ndarray:
     """Unit vectors, uniform on the sphere."""
     vectors = random.standard_normal((count, 3))
     return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
-def _turbulence(axes, k, exponent, modes, seed):
+def _turbulence(axes: Axes, k: float | None, exponent: float, modes: int, seed: int) -> Slices:
     """Random waves with energy spectrum E(k) ~ k^-exponent, in standard deviations.
 
     As in Kraichnan's synthetic turbulence: the wave numbers are spaced evenly in log k from one
@@ -287,7 +313,7 @@ def _turbulence(axes, k, exponent, modes, seed):
     return _waves(axes, numbers[:, None] * _directions(random, modes), amplitudes, random)
 
 
-def _porous(axes, k, porosity, noise, modes, seed):
+def _porous(axes: Axes, k: float, porosity: float, noise: float, modes: int, seed: int) -> Slices:
     """A scan of a porous solid: two grey levels 0 and 1, soft edges, and noise in every sample.
 
     The pores are where random waves of about `k` periods per side stay below a threshold.
@@ -300,7 +326,7 @@ def _porous(axes, k, porosity, noise, modes, seed):
     # Edges about 1.5 samples wide, as a detector blurs them: the waves' slope is about π k.
     sharpness = min(map(len, axes)) / (1.5 * np.pi * k)
 
-    def slice_at(i):
+    def slice_at(i: int) -> np.ndarray:
         solid = 0.5 + 0.5 * np.tanh(sharpness * (wave(i) - threshold))
         grain = np.random.default_rng([seed, i]).standard_normal(solid.shape, np.float32)
         return solid + noise * grain
@@ -308,7 +334,7 @@ def _porous(axes, k, porosity, noise, modes, seed):
     return slice_at
 
 
-def _normal_quantile(fraction):
+def _normal_quantile(fraction: float) -> float:
     """Where the standard normal distribution reaches a fraction."""
     return NormalDist().inv_cdf(fraction)
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..oracle.caster import Cast
 from . import tolerances
 
 
@@ -35,18 +36,18 @@ class Agreement:
     hits: int
 
     @property
-    def wrong(self):
+    def wrong(self) -> np.ndarray:
         """Where depths are off by more than is allowed."""
         return ~(self.error <= self.allowed)
 
     @property
-    def worst(self):
+    def worst(self) -> tuple[float, float]:
         """Error and what is allowed, of the ray that comes closest to it or is farthest beyond."""
         at = np.argmax(self.error / self.allowed)
         return float(self.error.flat[at]), float(self.allowed.flat[at])
 
 
-def compare(depth, expected):
+def compare(depth: np.ndarray, expected: Cast) -> Agreement:
     """Hold depths against the caster's.
 
     A depth must lie between the first possible and the first certain crossing, and be a hit if one
@@ -82,17 +83,19 @@ def compare(depth, expected):
     )
 
 
-def _part(chosen, among):
+def _part(chosen: np.ndarray, among: np.ndarray) -> float:
     """Part of some rays that is chosen; 0 of none."""
     return float(np.mean(chosen[among])) if among.any() else 0.0
 
 
-def _difference(a, b, where):
+def _difference(a: np.ndarray, b: np.ndarray, where: np.ndarray) -> np.ndarray:
     """a - b, and zero elsewhere: infinities need not meet there."""
     return np.subtract(a, b, out=np.zeros(np.shape(a)), where=where)
 
 
-def depth_error(depth, expected, voxels):
+def depth_error(
+    depth: np.ndarray, expected: np.ndarray, voxels: np.ndarray
+) -> dict[str, float | None]:
     """Compare depths with the caster's.
 
     Parameters

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
 import time
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from ..io.files import atomic_path
 
@@ -17,7 +20,7 @@ FILE = "results.json"
 _SAME = ("cpu", "cores", "gl", "gl_version", "vtk", "smp")
 
 
-def new_document(name, command, machine):
+def new_document(name: str, command: str, machine: dict[str, Any]) -> dict[str, Any]:
     """Begin a run's results.
 
     Parameters
@@ -46,7 +49,7 @@ def new_document(name, command, machine):
     return {"schema": SCHEMA, "machine": about, "runs": [run], "measurements": {}}
 
 
-def save_document(document, folder):
+def save_document(document: dict[str, Any], folder: str | os.PathLike[str]) -> Path:
     """Write the results into a folder, replacing what an earlier run left there.
 
     Parameters
@@ -63,7 +66,7 @@ def save_document(document, folder):
     return path
 
 
-def write_json(document, path):
+def write_json(document: dict[str, Any], path: str | os.PathLike[str]) -> None:
     """Write a document into a file, replacing what was there.
 
     Parameters
@@ -76,7 +79,7 @@ def write_json(document, path):
         temporary.write_text(text + "\n", encoding="utf-8")
 
 
-def load_document(path):
+def load_document(path: str | os.PathLike[str]) -> dict[str, Any]:
     """Read results.
 
     Parameters
@@ -108,7 +111,7 @@ def load_document(path):
     return document
 
 
-def merge(documents):
+def merge(documents: Sequence[dict[str, Any]]) -> dict[str, Any]:
     """Put the results of several runs on one machine together.
 
     Parameters
@@ -126,7 +129,7 @@ def merge(documents):
         When the machines differ.
     """
     first = documents[0]
-    measurements = {}
+    measurements: dict[str, dict[str, dict[str, Any]]] = {}
     for document in documents:
         ours, other = first["machine"], document["machine"]
         differing = [key for key in _SAME if ours[key] != other[key]]
@@ -143,7 +146,7 @@ def merge(documents):
     return {**first, "runs": runs, "measurements": records}
 
 
-def _identity(record):
+def _identity(record: dict[str, Any]) -> str:
     """What makes a record a measurement of the same thing as another."""
     keys = ("field", "size", "fixed_isovalues", "grows")
     return json.dumps([record.get(key) for key in keys])

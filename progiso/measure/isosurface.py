@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from ..isosurface import make_isosurface
 from ..statistics import depth, statistics
@@ -36,14 +39,14 @@ class Isosurface(View):
 
     def __init__(
         self,
-        image,
-        isovalue,
-        size,
-        speculation=True,
-        detailed=False,
-        memory_budget=0,
-        cached=False,
-    ):
+        image: vtkImageData,
+        isovalue: float,
+        size: tuple[int, int],
+        speculation: bool = True,
+        detailed: bool = False,
+        memory_budget: int = 0,
+        cached: bool = False,
+    ) -> None:
         prop = make_isosurface(
             image, isovalue, speculation=speculation, memory_budget=memory_budget
         )
@@ -52,44 +55,44 @@ class Isosurface(View):
         self.mapper.SetDetailedStatistics(detailed)
         self.mapper.SetDecodeWholeVolume(not cached)
 
-    def set_isovalue(self, isovalue):
+    def set_isovalue(self, isovalue: float) -> None:
         """Show another isovalue from the next render on."""
         self.prop.GetProperty().GetIsoSurfaceValues().SetValue(0, isovalue)
 
-    def set_passes_per_render(self, count):
+    def set_passes_per_render(self, count: int) -> None:
         """Show the image after every `count` passes; 0 for complete images only."""
         self.mapper.SetMaximumPassesPerRender(count)
 
-    def converged(self):
+    def converged(self) -> bool:
         """Whether the last image is complete."""
         return self.mapper.GetConverged()
 
-    def statistics(self):
+    def statistics(self) -> dict[str, Any]:
         """`progiso.statistics` of the last image."""
         return statistics(self.mapper, self.renderer)
 
-    def depth(self):
+    def depth(self) -> np.ndarray:
         """`progiso.depth` of the last image."""
         return depth(self.mapper)
 
-    def depth_resolution(self):
+    def depth_resolution(self) -> float:
         """Resolution of `depth` in world units: that of float32 where it is largest."""
         distances = self.depth()
         return float(np.spacing(distances[np.isfinite(distances)].max(initial=0.0)))
 
 
-def cache_bytes(memory):
+def cache_bytes(memory: dict[str, Any]) -> int:
     """Bytes of the block cache in ``statistics()["memory"]``."""
     buffers = memory["buffers"].items()
     return sum(count for name, count in buffers if name.startswith(CACHE_PREFIX))
 
 
-def other_bytes(memory):
+def other_bytes(memory: dict[str, Any]) -> int:
     """Bytes beside the compressed stream and the block cache in ``statistics()["memory"]``."""
     return memory["total"] - memory["compressed"] - cache_bytes(memory)
 
 
-def stage_times(about):
+def stage_times(about: dict[str, Any]) -> dict[str, float]:
     """Milliseconds of every stage over the passes of an image, of a ``detailed`` view's statistics.
 
     Returns

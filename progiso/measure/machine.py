@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import time
 from pathlib import Path
+from typing import Any
 
 from vtkmodules.vtkCommonCore import vtkSMPTools, vtkVersion
 from vtkmodules.vtkRenderingCore import vtkRenderWindow
@@ -25,13 +26,13 @@ _PROCESSORS = Path("/proc/stat")
 _RESET_PEAK = "5"  # to clear_refs: the peak of the resident set starts anew
 
 
-def use_all_cores():
+def use_all_cores() -> None:
     """Have VTK's filters use all cores, as ParaView's do; those of PyPI's wheel use one by default."""
     if vtkSMPTools.GetBackend() == "Sequential":
         vtkSMPTools.SetBackend("STDThread")
 
 
-def describe_machine():
+def describe_machine() -> dict[str, Any]:
     """Describe hardware and software, ready for JSON.
 
     Returns
@@ -65,7 +66,7 @@ def describe_machine():
     return about
 
 
-def machine_in_words(machine):
+def machine_in_words(machine: dict[str, Any]) -> str:
     """Describe a machine in a sentence, for a page of results.
 
     Parameters
@@ -86,7 +87,7 @@ def machine_in_words(machine):
     )
 
 
-def _cpu():
+def _cpu() -> str:
     """The processor's model."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
@@ -96,7 +97,7 @@ def _cpu():
     return models[0] if models else platform.processor() or platform.machine()
 
 
-def _capability(report, key):
+def _capability(report: str, key: str) -> str:
     """A line of VTK's report of an OpenGL context."""
     values = [line.split(":", 1)[1].strip() for line in report.splitlines() if line.startswith(key)]
     if not values:
@@ -107,7 +108,7 @@ def _capability(report, key):
     return values[0]
 
 
-def _output(*command):
+def _output(*command: str) -> str | None:
     """What a command prints; None where it is missing or fails."""
     if shutil.which(command[0]) is None:
         return None
@@ -115,13 +116,13 @@ def _output(*command):
     return None if done.returncode else done.stdout.strip()
 
 
-def _nvidia_smi(query):
+def _nvidia_smi(query: str) -> str | None:
     """A figure of the first GPU, as VTK's EGL windows use it; None without NVIDIA's tool."""
     text = _output("nvidia-smi", f"--query-gpu={query}", "--format=csv,noheader,nounits", "--id=0")
     return text or None
 
 
-def gpu_bytes():
+def gpu_bytes() -> int | None:
     """GPU memory in use by all processes.
 
     Returns
@@ -133,7 +134,7 @@ def gpu_bytes():
     return None if used is None else int(used) * 2**20
 
 
-def resident_bytes():
+def resident_bytes() -> int:
     """Main memory that this process holds now, after what it can give back is given back.
 
     Returns
@@ -144,7 +145,7 @@ def resident_bytes():
     return _status("VmRSS")
 
 
-def available_bytes():
+def available_bytes() -> int:
     """Main memory that is free or can be freed.
 
     Returns
@@ -168,7 +169,7 @@ class PeakMemory:
     True
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         gc.collect()
         ctypes.CDLL(None).malloc_trim(0)
         try:
@@ -178,12 +179,12 @@ class PeakMemory:
         else:
             self._before = _status("VmRSS")
 
-    def bytes(self):
+    def bytes(self) -> int | None:
         """Bytes of the peak so far; None where the system does not let it be measured."""
         return None if self._before is None else _status("VmHWM") - self._before
 
 
-def _status(key):
+def _status(key: str) -> int:
     """A figure of this process, in bytes."""
     lines = _STATUS.read_text(encoding="ascii").splitlines()
     return next(int(line.split()[1]) * 1024 for line in lines if line.startswith(f"{key}:"))
@@ -200,19 +201,20 @@ class OtherProcesses:
     True
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._start, self._before = time.monotonic(), _seconds_of_others()
 
-    def cores(self):
+    def cores(self) -> float | None:
         """Cores that were busy for others, in the mean; None where the system does not tell."""
         elapsed = time.monotonic() - self._start
-        if self._before is None or elapsed <= 0:
+        busy = _seconds_of_others()
+        if self._before is None or busy is None or elapsed <= 0:
             return None
         # both are counted in ticks, which need not fall together
-        return max(0.0, (_seconds_of_others() - self._before) / elapsed)
+        return max(0.0, (busy - self._before) / elapsed)
 
 
-def _seconds_of_others():
+def _seconds_of_others() -> float | None:
     """Processor time of all but this process and its children; None where it cannot be read."""
     try:
         line = _PROCESSORS.read_text(encoding="ascii").splitlines()[0]

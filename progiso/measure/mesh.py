@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from time import perf_counter
 
+import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
 
@@ -14,7 +16,9 @@ from .view import View
 _VTK_KIB = 1024  # unit of GetActualMemorySize()
 
 
-def extract(image, isovalue, normals=True):
+def extract(
+    image: vtkImageData, isovalue: float, normals: bool = True
+) -> tuple[vtkPolyData, float]:
     """Extract an isosurface.
 
     Parameters
@@ -47,7 +51,7 @@ def extract(image, isovalue, normals=True):
     return filter_.GetOutput(), 1e3 * elapsed
 
 
-def mesh_bytes(mesh):
+def mesh_bytes(mesh: vtkPolyData) -> int:
     """Main memory that a mesh takes, in bytes."""
     return _VTK_KIB * mesh.GetActualMemorySize()
 
@@ -65,7 +69,7 @@ class Mesh(View):
 
     label = "VTK FlyingEdges"
 
-    def __init__(self, mesh, size):
+    def __init__(self, mesh: vtkPolyData, size: tuple[int, int]) -> None:
         self.mapper = vtkPolyDataMapper()
         self.mapper.SetInputData(mesh)
         self.mapper.ScalarVisibilityOff()
@@ -73,7 +77,7 @@ class Mesh(View):
         prop.SetMapper(self.mapper)
         super().__init__(prop, size)
 
-    def depth(self):
+    def depth(self) -> np.ndarray:
         """Render once more; distances along the rays, see `DepthRange.read`."""
         depths = DepthRange.of(self)
         tag, code = "//VTK::Light::Impl", depths.glsl("length(vertexVC.xyz)")
@@ -83,6 +87,6 @@ class Mesh(View):
         shader.ClearAllFragmentShaderReplacements()
         return depths.read(self)
 
-    def depth_resolution(self):
+    def depth_resolution(self) -> float:
         """Resolution of `depth` in world units."""
         return DepthRange.of(self).resolution

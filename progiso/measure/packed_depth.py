@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..rendering import window_pixels
+from .view import View
 
 _STEPS = 2**24 - 2  # 0 is left for pixels without a surface
 
@@ -45,21 +46,21 @@ class DepthRange:
     span: float
 
     @classmethod
-    def of(cls, view):
+    def of(cls, view: View) -> DepthRange:
         """Range of the sphere about a view's prop."""
         camera = view.renderer.GetActiveCamera()
         low, high = np.reshape(view.prop.GetBounds(), (3, 2)).T
         radius = np.linalg.norm(high - low) / 2
         away = np.linalg.norm((low + high) / 2 - camera.GetPosition())
-        near = max(0.0, away - radius)
-        return cls(near, away + radius - near)
+        near = max(0.0, float(away - radius))
+        return cls(near, float(away + radius) - near)
 
     @property
-    def resolution(self):
+    def resolution(self) -> float:
         """Distance between two values that can be told apart, in world units."""
         return self.span / _STEPS
 
-    def glsl(self, distance, hit="true"):
+    def glsl(self, distance: str, hit: str = "true") -> str:
         """Code that overwrites the colour with a distance.
 
         Parameters
@@ -75,7 +76,7 @@ class DepthRange:
             hit=hit, distance=distance, near=self.near, span=self.span, steps=float(_STEPS)
         )
 
-    def read(self, view):
+    def read(self, view: View) -> np.ndarray:
         """Distances in a view that was rendered with this range's code.
 
         Returns

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 
 
-def number(value):
+def number(value: float | None) -> str:
     """Three significant digits, without an exponent where that stays short.
 
     Parameters
@@ -33,7 +34,7 @@ def number(value):
     return text.rstrip("0").rstrip(".") if "." in text else text
 
 
-def milliseconds(value):
+def milliseconds(value: float | None) -> str:
     """A time in milliseconds or seconds.
 
     Examples
@@ -46,7 +47,7 @@ def milliseconds(value):
     return f"{number(value)} ms" if value < 10_000 else f"{number(value / 1e3)} s"
 
 
-def bytes_(value):
+def bytes_(value: float | None) -> str:
     """An amount of memory in KiB, MiB or GiB.
 
     Examples
@@ -62,7 +63,7 @@ def bytes_(value):
     return f"{number(value / 2**10)} KiB"
 
 
-def count(value):
+def count(value: float | None) -> str:
     """A large number in thousands or millions.
 
     Examples
@@ -78,7 +79,7 @@ def count(value):
     return number(value)
 
 
-def percent(value):
+def percent(value: float) -> str:
     """A percentage.
 
     Examples
@@ -89,7 +90,7 @@ def percent(value):
     return f"{number(value)} %"
 
 
-def pixels(size):
+def pixels(size: Sequence[int]) -> str:
     """An image's size.
 
     Examples
@@ -100,7 +101,7 @@ def pixels(size):
     return f"{size[0]}×{size[1]}"
 
 
-def table(headers, rows):
+def table(headers: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
     """A Markdown table; the first column is text, the others are figures.
 
     Parameters
@@ -117,5 +118,5 @@ def table(headers, rows):
     return [*lines, *(_row(row) for row in rows), ""]
 
 
-def _row(cells):
+def _row(cells: Iterable[str]) -> str:
     return f"| {' | '.join(cells)} |"

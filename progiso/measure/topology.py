@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkConnectivityFilter
 
 from ..geometry import image_from_array, samples_of
 from .mesh import extract
 
 
-def topology(image, isovalue):
+def topology(image: vtkImageData, isovalue: float) -> dict[str, int]:
     """Count surfaces and handles of FlyingEdges' mesh, closed at the volume's border.
 
     Parameters
@@ -40,7 +41,7 @@ def topology(image, isovalue):
     }
 
 
-def _edges(corners):
+def _edges(corners: np.ndarray) -> int:
     """Number of edges of triangles."""
     ends = np.sort(np.vstack([corners[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1)
     keys = ends[:, 0].astype(np.int64) << 32 | ends[:, 1]
@@ -48,7 +49,7 @@ def _edges(corners):
     return int((np.diff(keys, prepend=-1) != 0).sum())
 
 
-def _components(mesh):
+def _components(mesh: vtkPolyData) -> int:
     connectivity = vtkConnectivityFilter()
     connectivity.SetInputData(mesh)
     connectivity.SetExtractionModeToAllRegions()

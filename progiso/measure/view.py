@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import replace
 from time import perf_counter
 
 import numpy as np
-from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
+from vtkmodules.vtkRenderingCore import vtkProp3D, vtkRenderer, vtkRenderWindow
 
 from .._vtk import vtk_errors
+from ..camera import Camera
 
 #: Seconds that a GPU is kept busy before its times count.
 WARM_UP = 1.0
 
 
-class View:
+class View(ABC):
     """A prop alone on black in a window of its own.
 
     Parameters
@@ -26,9 +28,12 @@ class View:
         Width and height in pixels.
     """
 
-    def __init__(self, prop, size):
+    #: What tables call this way to an image.
+    label: str
+
+    def __init__(self, prop: vtkProp3D, size: tuple[int, int]) -> None:
         self.prop = prop
-        self.size = tuple(size)
+        self.size = size
         self.renderer = vtkRenderer()
         self.renderer.AddViewProp(prop)
         self.window = vtkRenderWindow()
@@ -37,12 +42,12 @@ class View:
         self.window.SetSize(*self.size)
         self.window.AddRenderer(self.renderer)
 
-    def look(self, camera):
+    def look(self, camera: Camera) -> None:
         """Move to a `progiso.Camera`, its clipping range around the prop."""
         camera.apply(self.renderer.GetActiveCamera())
         self.renderer.ResetCameraClippingRange()
 
-    def render(self):
+    def render(self) -> float:
         """Render, and wait until the GPU has finished.
 
         Returns
@@ -62,12 +67,12 @@ class View:
             elapsed = perf_counter() - start
         return 1e3 * elapsed
 
-    def render_from(self, camera):
+    def render_from(self, camera: Camera) -> float:
         """Look, then render; milliseconds of wall clock of the latter."""
         self.look(camera)
         return self.render()
 
-    def warm_up(self, camera, seconds=WARM_UP):
+    def warm_up(self, camera: Camera, seconds: float = WARM_UP) -> float:
         """Render from a camera, for as long as a GPU takes to speed up.
 
         While the CPU prepares something a GPU falls asleep, and runs at a third of its speed for
@@ -91,12 +96,20 @@ class View:
             self.render()
         return first
 
-    def close(self):
+    @abstractmethod
+    def depth(self) -> np.ndarray:
+        """Distances along the rays of the last view, ``inf`` where nothing is hit; row 0 is the top."""
+
+    @abstractmethod
+    def depth_resolution(self) -> float:
+        """Resolution of `depth` in world units."""
+
+    def close(self) -> None:
         """Give back the window and all that it holds on the GPU."""
         self.window.Finalize()
 
 
-def opposite(camera):
+def opposite(camera: Camera) -> Camera:
     """The camera on the other side of the focal point.
 
     Parameters
@@ -111,7 +124,7 @@ def opposite(camera):
     return replace(camera, position=position)
 
 
-def turned(camera, degrees):
+def turned(camera: Camera, degrees: float) -> Camera:
     """The camera moved sideways about the focal point, on the great circle to its right.
 
     Parameters

@@ -11,9 +11,17 @@ the first place where the other side is *possible* (`Cast.early`) and where it i
 by the `Slack` given. A correct depth lies between the two, and may be a miss only if no crossing is certain.
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from vtkmodules.vtkCommonDataModel import vtkImageData
+    from vtkmodules.vtkRenderingCore import vtkCamera
 
 FLOAT32_ULP = 2.0**-24
 CHUNK = 1 << 16
@@ -51,19 +59,19 @@ class Volume:
 
     values: np.ndarray
     index_to_world: np.ndarray
-    hidden: np.ndarray = None
+    hidden: np.ndarray | None = None
 
     @classmethod
     def from_geometry(
         cls,
-        values,
-        origin=(0, 0, 0),
-        spacing=(1, 1, 1),
-        direction=np.eye(3),
-        extent_start=(0, 0, 0),
-        user=np.eye(4),
-        shift=0.0,
-    ):
+        values: np.ndarray,
+        origin: Sequence[float] = (0, 0, 0),
+        spacing: Sequence[float] = (1, 1, 1),
+        direction: np.ndarray | Sequence[Sequence[float]] = np.eye(3),
+        extent_start: Sequence[int] = (0, 0, 0),
+        user: np.ndarray = np.eye(4),
+        shift: float = 0.0,
+    ) -> Volume:
         """Place `values` as ``vtkImageData`` does; `shift` is 0.5 where they belong to cells."""
         matrix = np.eye(4)
         matrix[:3, :3] = np.asarray(direction, float).reshape(3, 3) * np.asarray(spacing, float)
@@ -73,7 +81,13 @@ class Volume:
         return cls(np.asarray(values), np.asarray(user, float) @ matrix)
 
     @classmethod
-    def from_image(cls, values, image, user=np.eye(4), shift=0.0):
+    def from_image(
+        cls,
+        values: np.ndarray,
+        image: vtkImageData,
+        user: np.ndarray = np.eye(4),
+        shift: float = 0.0,
+    ) -> Volume:
         """Place `values` where a ``vtkImageData`` lies; `user` and `shift` as in `from_geometry`."""
         direction = image.GetDirectionMatrix()
         matrix = [[direction.GetElement(r, c) for c in range(3)] for r in range(3)]
@@ -87,14 +101,14 @@ class Volume:
 class Camera:
     """A VTK camera: pixel centres are sampled, row 0 is at the top of the image."""
 
-    position: tuple
-    focal_point: tuple
-    view_up: tuple = (0.0, 1.0, 0.0)
+    position: tuple[float, ...]
+    focal_point: tuple[float, ...]
+    view_up: tuple[float, ...] = (0.0, 1.0, 0.0)
     view_angle: float = 30.0
-    parallel_scale: float = None
+    parallel_scale: float | None = None
 
     @classmethod
-    def from_vtk(cls, camera):
+    def from_vtk(cls, camera: vtkCamera) -> Camera:
         """Copy a ``vtkCamera``."""
         return cls(
             camera.GetPosition(),
@@ -105,11 +119,13 @@ class Camera:
         )
 
     @property
-    def forward(self):
+    def forward(self) -> np.ndarray:
         """Unit vector across the image plane."""
         return _unit(np.subtract(self.focal_point, self.position, dtype=float))
 
-    def rays(self, size, pixels=None):
+    def rays(
+        self, size: tuple[int, int], pixels: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Return origins and unit directions, each [height * width, 3], for an image of `size` (width, height).
 
         `pixels`, counted through the rows from the top, has only some of them made.
@@ -151,7 +167,15 @@ class Cast:
     voxels: np.ndarray
 
 
-def cast(volume, isovalue, camera, size, slack=Slack(), clip=(0.0, np.inf), pixels=None):
+def cast(
+    volume: Volume,
+    isovalue: float,
+    camera: Camera,
+    size: tuple[int, int],
+    slack: Slack = Slack(),
+    clip: tuple[float, float] = (0.0, np.inf),
+    pixels: np.ndarray | None = None,
+) -> Cast:
     """Cast one ray through the centre of each of the image's pixels, or of some.
 
     Parameters
@@ -182,7 +206,15 @@ def cast(volume, isovalue, camera, size, slack=Slack(), clip=(0.0, np.inf), pixe
     )
 
 
-def cast_rays(volume, isovalue, origins, directions, slack=Slack(), begin=0.0, end=np.inf):
+def cast_rays(
+    volume: Volume,
+    isovalue: float,
+    origins: np.ndarray,
+    directions: np.ndarray,
+    slack: Slack = Slack(),
+    begin: np.ndarray | float = 0.0,
+    end: np.ndarray | float = np.inf,
+) -> Cast:
     """Cast the rays ``origins + t * directions``, t from `begin` to `end`, with unit directions; see `cast`."""
     grid = _Grid(volume, float(isovalue), slack)
     to_index = np.linalg.inv(volume.index_to_world[:3, :3])
@@ -216,12 +248,18 @@ class Crossings:
     depth: np.ndarray
     surface: np.ndarray
 
-    def only(self, kept):
+    def only(self, kept: np.ndarray) -> Crossings:
         """Return those that a mask keeps."""
         return Crossings(self.ray[kept], self.depth[kept], self.surface[kept])
 
 
-def cast_all(volume, isovalues, camera, size, clip=(0.0, np.inf)):
+def cast_all(
+    volume: Volume,
+    isovalues: Sequence[float],
+    camera: Camera,
+    size: tuple[int, int],
+    clip: tuple[float, float] = (0.0, np.inf),
+) -> Crossings:
     """Find all crossings of the image's rays with the surfaces of several isovalues; see `cast`.
 
     Returns
@@ -245,14 +283,14 @@ def cast_all(volume, isovalues, camera, size, clip=(0.0, np.inf)):
     parts = []
     for number, isovalue in enumerate(isovalues):
         grid = _Grid(volume, float(isovalue), Slack())
-        found = _FullWalk(grid, start[:, rays], step[:, rays], enter[rays], leave[rays]).run()
+        found = _FullWalk(grid, start[:, rays], step[:, rays], enter[rays], leave[rays]).crossings()
         parts.append((rays[found[0]], found[1], np.full(len(found[0]), number)))
     ray, depth, surface = (np.concatenate(part) for part in zip(*parts))
     order = np.lexsort((depth, ray))
     return Crossings(ray[order], depth[order], surface[order])
 
 
-def _unit(vector):
+def _unit(vector: np.ndarray) -> np.ndarray:
     return vector / np.linalg.norm(vector)
 
 
@@ -265,7 +303,7 @@ class _Grid:
     What else a ray has to know of a cell is made when it gets there, so that a volume takes little more memory than its samples.
     """
 
-    def __init__(self, volume, isovalue, slack):
+    def __init__(self, volume: Volume, isovalue: float, slack: Slack) -> None:
         values = volume.values
         if volume.hidden is not None:
             values = np.where(_touched(~volume.hidden), values, 0)
@@ -294,7 +332,7 @@ class _Grid:
             self.hidden = np.pad(volume.hidden, ((0, 1),) * 3).ravel()
         self.matters = matters.ravel()
 
-    def _matters(self, values):
+    def _matters(self, values: np.ndarray) -> np.ndarray:
         """Mark the cells between samples [z, y, x] that can matter."""
         excess = values.astype(float) - self.isovalue
         low, high = _cell_extremes(excess, np.minimum), _cell_extremes(excess, np.maximum)
@@ -304,12 +342,12 @@ class _Grid:
         # Bits 2 and 3: the same without any error. A cell at or above the isovalue throughout is not left for rounding's sake.
         return matters | ((low < 0).astype(np.uint8) << 2) | ((high >= 0).astype(np.uint8) << 3)
 
-    def _error(self, low, high):
+    def _error(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         """Return what the slack allows in cells whose corners exceed the isovalue by `low` to `high`."""
         largest = np.maximum(np.abs(low), np.abs(high))
         return self.slack.value * FLOAT32_ULP * largest + self.slack.position * (high - low)
 
-    def cells(self, index):
+    def cells(self, index: np.ndarray) -> tuple[dict[str, np.ndarray], np.ndarray]:
         """Return the trilinear polynomials of cells, keyed by their variables, and the error that the slack allows in them."""
         excess = self.samples[index + self.offsets[:, None]].astype(float) - self.isovalue
         c = dict(zip(_CORNERS, excess))
@@ -333,7 +371,7 @@ _CORNERS = [f"{i:03b}" for i in range(8)]
 _SLAB = 16
 
 
-def _touched(cells):
+def _touched(cells: np.ndarray) -> np.ndarray:
     """Mark the samples that are corners of marked cells."""
     samples = np.zeros(np.array(cells.shape) + 1, bool)
     for corner in np.ndindex(2, 2, 2):
@@ -341,7 +379,7 @@ def _touched(cells):
     return samples
 
 
-def _cell_extremes(samples, pick):
+def _cell_extremes(samples: np.ndarray, pick: np.ufunc) -> np.ndarray:
     for axis in range(3):
         head = [slice(None)] * 3
         tail = [slice(None)] * 3
@@ -353,10 +391,17 @@ def _cell_extremes(samples, pick):
 # --- a ray's way through the grid -----------------------------------------------------------------------------------------
 
 
-def clip_to_box(start, step, begin, end, low, high):
+def clip_to_box(
+    start: np.ndarray,
+    step: np.ndarray,
+    begin: np.ndarray | float,
+    end: np.ndarray | float,
+    low: np.ndarray,
+    high: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
     """Return where rays, each a column of `start` and `step`, enter and leave a box between `begin` and `end`; they miss it where
     ``enter > leave``."""
-    near, far = begin, end
+    near, far = np.asarray(begin), np.asarray(end)
     for axis in range(3):
         with np.errstate(divide="ignore", invalid="ignore"):
             a, b = (low[axis] - start[axis]) / step[axis], (high[axis] - start[axis]) / step[axis]
@@ -371,7 +416,14 @@ def clip_to_box(start, step, begin, end, low, high):
     return near, far
 
 
-def _cast_chunk(grid, start, step, begin, end, slack):
+def _cast_chunk(
+    grid: _Grid,
+    start: np.ndarray,
+    step: np.ndarray,
+    begin: np.ndarray,
+    end: np.ndarray,
+    slack: Slack,
+) -> np.ndarray:
     """Return `early`, `depth` and `late` of rays given in index space."""
     last = (grid.size - 1).astype(float)
     hits = np.full((3, start.shape[1]), np.inf)
@@ -398,7 +450,9 @@ def _cast_chunk(grid, start, step, begin, end, slack):
 class _Walk:
     """All rays of a chunk, step by step from cell to cell, until their last crossing is found or they leave."""
 
-    def __init__(self, grid, start, step, enter, leave):
+    def __init__(
+        self, grid: _Grid, start: np.ndarray, step: np.ndarray, enter: np.ndarray, leave: np.ndarray
+    ) -> None:
         self.grid = grid
         self.enter = enter
         # Distances are kept from the entry on, so that a far camera costs no digits.
@@ -420,7 +474,7 @@ class _Walk:
         self.unsure = np.zeros(len(enter), bool)
         self._find_sides(np.arange(len(enter)))
 
-    def _find_sides(self, rays):
+    def _find_sides(self, rays: np.ndarray) -> None:
         """Set +1 for rays that are inside where they are and -1 outside; where rounding decides, any outcome is possible.
 
         0 where that is hidden: it is found where the ray comes out.
@@ -439,11 +493,11 @@ class _Walk:
         )
         self.side[rays] = np.where(excess >= 0, 1.0, -1.0)
 
-    def _corner(self, rays=slice(None)):
+    def _corner(self, rays: np.ndarray | slice = slice(None)) -> np.ndarray:
         index, (_, sy, sz) = self.index[rays], self.grid.strides
         return np.stack([index % sy, index % sz // sy, index // sz])
 
-    def run(self):
+    def run(self) -> np.ndarray:
         rays = np.arange(len(self.enter))
         while len(rays):
             if self.grid.hidden is not None:
@@ -460,7 +514,7 @@ class _Walk:
         self.hits[2, self.unsure] = np.inf
         return self.hits
 
-    def _advance(self, rays, axis):
+    def _advance(self, rays: np.ndarray, axis: np.ndarray) -> np.ndarray:
         """Step to the next cells; return the rays that have one and still look for a crossing."""
         go = (
             (self.left[axis, rays] > 0)
@@ -477,7 +531,7 @@ class _Walk:
         ]
         return rays
 
-    def _intersect(self, rays, far):
+    def _intersect(self, rays: np.ndarray, far: np.ndarray) -> None:
         """Look for the crossings of rays in their cells, between the distances `near` and `far`."""
         near, corner = self.near[rays], self._corner(rays)
         a = np.clip(self.start[:, rays] + near * self.step[:, rays] - corner, 0, 1)
@@ -505,8 +559,9 @@ class _Walk:
 class _FullWalk(_Walk):
     """The same walk, but on through all crossings, whichever way they go."""
 
-    def run(self):
-        self.found = []
+    def crossings(self) -> list[np.ndarray]:
+        """Return the rays and the distances of all crossings."""
+        self.found: list[tuple[np.ndarray, np.ndarray]] = []
         rays = np.arange(len(self.enter))
         while len(rays):
             axis = np.argmin(self.far[:, rays], axis=0)
@@ -517,7 +572,7 @@ class _FullWalk(_Walk):
             rays = self._advance(rays, axis)
         return [np.concatenate(part) for part in zip(*self.found)]
 
-    def _collect(self, rays, far):
+    def _collect(self, rays: np.ndarray, far: np.ndarray) -> None:
         """Note the crossings of rays in their cells, one at most on each monotone piece of the cubic."""
         near, corner = self.near[rays], self._corner(rays)
         a = np.clip(self.start[:, rays] + near * self.step[:, rays] - corner, 0, 1)
@@ -538,7 +593,7 @@ class _FullWalk(_Walk):
 # --- the cubic along a ray --------------------------------------------------------------------------------------------------
 
 
-def _along(c, a, b):
+def _along(c: dict[str, np.ndarray], a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Return coefficients [4, n] of the interpolants `c` at ``a + s * b`` (in the cell, 0 to 1), from the constant up."""
     (ax, ay, az), (bx, by, bz) = a, b
     constant = (
@@ -557,11 +612,11 @@ def _along(c, a, b):
     return np.stack([constant, linear, square, c["xyz"] * bx * by * bz])
 
 
-def _evaluate(cubic, s):
+def _evaluate(cubic: np.ndarray, s: np.ndarray) -> np.ndarray:
     return ((cubic[3] * s + cubic[2]) * s + cubic[1]) * s + cubic[0]
 
 
-def _monotone_knots(cubic):
+def _monotone_knots(cubic: np.ndarray) -> np.ndarray:
     """Return [4, n] ascending: 0, the cubic's extrema (clipped to 0 to 1), 1."""
     c, b, a = cubic[1], 2 * cubic[2], 3 * cubic[3]
     root = np.sqrt(np.maximum(b * b - 4 * a * c, 0))
@@ -574,7 +629,9 @@ def _monotone_knots(cubic):
     return np.concatenate([np.zeros((1, len(c))), extrema, np.ones((1, len(c)))])
 
 
-def _first_root(cubic, knots, crossed, threshold):
+def _first_root(
+    cubic: np.ndarray, knots: np.ndarray, crossed: np.ndarray, threshold: np.ndarray
+) -> np.ndarray:
     """Return where the cubic first falls to the threshold; `crossed` tells at which knots it has."""
     first = np.argmax(crossed, axis=0)
     column = np.arange(len(first))

@@ -15,7 +15,7 @@ except ImportError:
 VALUES_PER_BLOCK = 64
 
 
-def decode(stream, dimensions, block_bits):
+def decode(stream: bytes, dimensions: tuple[int, ...], block_bits: int) -> np.ndarray:
     """Decode a headerless fixed-rate stream of float32 blocks.
 
     Parameters
@@ -36,7 +36,7 @@ def decode(stream, dimensions, block_bits):
     )
 
 
-def encode(values, rate):
+def encode(values: np.ndarray, rate: float) -> bytes:
     """Encode float32 values [z, y, x] by the ``zfp`` tool; return the headerless stream."""
     values = np.ascontiguousarray(values, np.float32)
     with tempfile.TemporaryDirectory() as folder:
@@ -46,17 +46,17 @@ def encode(values, rate):
         return packed.read_bytes()
 
 
-def has_tool():
+def has_tool() -> bool:
     """Tell whether the ``zfp`` command line tool is installed."""
     return shutil.which("zfp") is not None
 
 
-def _decode_by_binding(stream, dimensions, block_bits):
+def _decode_by_binding(stream: bytes, dimensions: tuple[int, ...], block_bits: int) -> np.ndarray:
     rate = block_bits / VALUES_PER_BLOCK
     return np.array(zfpy._decompress(stream, zfpy.type_float, dimensions[::-1], rate=rate))
 
 
-def _decode_by_tool(stream, dimensions, block_bits):
+def _decode_by_tool(stream: bytes, dimensions: tuple[int, ...], block_bits: int) -> np.ndarray:
     with tempfile.TemporaryDirectory() as folder:
         packed, raw = pathlib.Path(folder, "values.zfp"), pathlib.Path(folder, "values.raw")
         packed.write_bytes(stream)
@@ -73,9 +73,9 @@ def _decode_by_tool(stream, dimensions, block_bits):
         return np.fromfile(raw, np.float32).reshape(dimensions[::-1])
 
 
-def _size(dimensions):
+def _size(dimensions: tuple[int, ...]) -> list[str]:
     return ["-3", *map(str, dimensions)]
 
 
-def _zfp(*arguments):
+def _zfp(*arguments: object) -> None:
     subprocess.run(["zfp", "-q", *map(str, arguments)], check=True, capture_output=True, text=True)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Callable, Optional
+from typing import Any
 
 #: Verdicts. `LIMIT`: within the bound that is stated for what float32 or a format cannot do.
 OK, FAILED, LIMIT = "ok", "failed", "limit"
@@ -24,7 +25,7 @@ class Settings:
         How many are cast at closed surfaces.
     """
 
-    size: tuple = (320, 240)
+    size: tuple[int, int] = (320, 240)
     repeat: int = 3
     rays: int = 1_000_000
 
@@ -54,7 +55,7 @@ class Outcome:
 
     error: float
     limit: float
-    time_ms: Optional[float] = None
+    time_ms: float | None = None
     unit: str = "voxels"
     note: str = ""
     documented: bool = False
@@ -79,7 +80,7 @@ class Case:
     quick: bool = True
 
 
-def worst_of(outcomes):
+def worst_of(outcomes: Iterable[Outcome]) -> Outcome:
     """The outcome that is nearest to its limit, with the longest time and the first defect of all."""
     outcomes = list(outcomes)
     worst = max(outcomes, key=lambda outcome: outcome.error / outcome.limit)
@@ -95,7 +96,7 @@ def worst_of(outcomes):
     )
 
 
-def row_of(section, case, settings):
+def row_of(section: str, case: Case, settings: Settings) -> dict[str, Any]:
     """Measure a case.
 
     Parameters

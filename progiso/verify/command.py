@@ -6,18 +6,20 @@ import argparse
 import shlex
 import sys
 import time
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from ..io.files import atomic_path, check_output
 from ..measure.document import new_document, write_json
 from ..measure.machine import OtherProcesses, describe_machine
-from .case import FAILED, QUICK, Settings
+from .case import FAILED, QUICK, Case, Settings
 from .page import markdown, print_table
-from .table import cases, measure
+from .table import Started, cases, measure
 
 
-def add_verify(command):
+def add_verify(command: argparse.ArgumentParser) -> None:
     """Give the command ``verify`` its options.
 
     Parameters
@@ -46,7 +48,7 @@ def add_verify(command):
     command.set_defaults(run=_verify)
 
 
-def _count(text):
+def _count(text: str) -> int:
     """A type of option: a number, of rays for example, which may have an exponent."""
     try:
         value = float(text)
@@ -57,7 +59,7 @@ def _count(text):
     return int(value)
 
 
-def _verify(parsed):
+def _verify(parsed: argparse.Namespace) -> None:
     for path, suffixes in ((parsed.json, None), (parsed.output, (".md",))):
         if path is not None:
             check_output(path, suffixes)
@@ -79,7 +81,12 @@ def _verify(parsed):
         raise RuntimeError(f"{len(failed)} of {len(listed)} cases failed: {', '.join(failed)}")
 
 
-def verify(listed, settings, started=None, jobs=1):
+def verify(
+    listed: Sequence[tuple[str, Case]],
+    settings: Settings,
+    started: Started | None = None,
+    jobs: int = 1,
+) -> dict[str, Any]:
     """Measure cases; parameters as `table.measure` has them.
 
     Returns
@@ -98,10 +105,10 @@ def verify(listed, settings, started=None, jobs=1):
     return document
 
 
-def _say(count):
+def _say(count: int) -> Started:
     """Tell on standard error what is measured, of so many cases."""
 
-    def say(number, section, case):
+    def say(number: int, section: str, case: Case) -> None:
         print(f"{number}/{count} {section}: {case.name}", file=sys.stderr, flush=True)
 
     return say

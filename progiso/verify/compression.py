@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from ..camera import orbit_camera
 from ..compression import decompress
@@ -13,7 +15,7 @@ from ..geometry import samples_of
 from ..measure.agreement import depth_error
 from ..measure.topology import topology
 from ..oracle import caster
-from .case import Case
+from .case import Case, Outcome, Settings
 from .fields import coordinates, make_image, marschner_lobb
 from .scene import check_depths, compressed, decoded
 
@@ -22,7 +24,7 @@ _ISOVALUE = 0.5
 _RATES = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32)
 
 
-def _sheet(n):
+def _sheet(n: int) -> np.ndarray:
     """A curved sheet that is one sample thick: high on it, low on either side."""
     x, y, z = coordinates((n, n, n))
     centre = n / 2 - 0.3
@@ -30,14 +32,14 @@ def _sheet(n):
     return np.exp(-((off / 0.6) ** 2)).astype(np.float32)
 
 
-def _rate(field, rate, settings):
+def _rate(field: Callable[[int], np.ndarray], rate: float, settings: Settings) -> Outcome:
     values = field(41)
     plain, image = make_image(values), compressed(values, rate)
     outcome = check_depths(settings, image, _ISOVALUE, volume=decoded(image))
     return replace(outcome, note=f"{outcome.note}; {_worth(plain, image, settings.size)}")
 
 
-def _worth(plain, image, size):
+def _worth(plain: vtkImageData, image: vtkImageData, size: tuple[int, int]) -> str:
     """What is left of the surface, by the caster and FlyingEdges."""
     eye = orbit_camera(plain, 1, 4)
     eye = caster.Camera(eye.position, eye.focal_point, eye.view_up, eye.view_angle)
@@ -53,7 +55,7 @@ def _worth(plain, image, size):
     )
 
 
-def _figure(value):
+def _figure(value: float | None) -> str:
     return "–" if value is None else f"{value:.2g}"
 
 

@@ -15,13 +15,14 @@ from functools import partial
 from time import perf_counter
 
 import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from ..camera import Camera
 from ..compression import decompress
 from ..geometry import samples_of
 from ..measure.isosurface import Isosurface
 from ..oracle import caster
-from .case import Case, Outcome
+from .case import Case, Outcome, Settings
 from .scene import compressed
 
 ISOVALUE = 0.0
@@ -30,7 +31,7 @@ ISOVALUE = 0.0
 RATES = {"noise": (8.0, 16.0, 32.0), "smooth": (4.0, 8.0), "hollow": (8.0, 32.0), "thin": (32.0,)}
 
 #: How the work is divided: `Isosurface`'s arguments, and the budget in units of the least.
-DIVISIONS = (
+DIVISIONS: tuple[tuple[dict[str, bool], float | None], ...] = (
     ({}, None),
     ({"cached": True}, None),
     ({"cached": True, "speculation": False}, None),
@@ -66,13 +67,13 @@ class ClosedField:
     high: np.ndarray
     skin: np.ndarray
 
-    def is_closed(self, decoded):
+    def is_closed(self, decoded: np.ndarray) -> bool:
         """Tell whether core and skin are on their sides of the isovalue in decoded samples."""
         core = decoded[_box(self.low, self.high)]
         return bool((core >= ISOVALUE).all() and (decoded[self.skin] < ISOVALUE).all())
 
 
-def closed_field(kind, shape, seed):
+def closed_field(kind: str, shape: tuple[int, ...], seed: int | np.random.Generator) -> ClosedField:
     """Make a closed random field.
 
     Parameters
@@ -83,7 +84,7 @@ def closed_field(kind, shape, seed):
         of a box that is one sample thick and hardly below the isovalue.
     shape : tuple of int
         Samples along z, y and x, at least 9.
-    seed : int
+    seed : int or numpy.random.Generator
 
     Returns
     -------
@@ -103,14 +104,18 @@ def closed_field(kind, shape, seed):
     return ClosedField(values.astype(np.float32), low, high, skin)
 
 
-def _noise(rng, shape):
+def _noise(
+    rng: np.random.Generator, shape: tuple[int, ...]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     values = rng.normal(0.7, 1.0, shape)
     low, high = _random_box(rng, shape, 3)
     values[_box(low, high)] = rng.uniform(0.5, 2, (3, 3, 3))
     return values, low, high
 
 
-def _smooth(rng, shape):
+def _smooth(
+    rng: np.random.Generator, shape: tuple[int, ...]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     axes = np.meshgrid(*[np.linspace(-1, 1, n) for n in shape], indexing="ij")
     values = 0.6 - np.sqrt(sum(axis**2 for axis in axes))
     for _ in range(4):
@@ -124,18 +129,24 @@ def _smooth(rng, shape):
     return values, centre - half, centre + half
 
 
-def _hollow(rng, shape):
+def _hollow(
+    rng: np.random.Generator, shape: tuple[int, ...]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return rng.uniform(0.5, 2, shape), np.ones(3, int), np.array(shape[::-1]) - 2
 
 
-def _thin(rng, shape):
+def _thin(
+    rng: np.random.Generator, shape: tuple[int, ...]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return rng.uniform(0.1, 1, shape), *_random_box(rng, shape, None)
 
 
 _KINDS = {"noise": _noise, "smooth": _smooth, "hollow": _hollow, "thin": _thin}
 
 
-def _random_box(rng, shape, width):
+def _random_box(
+    rng: np.random.Generator, shape: tuple[int, ...], width: int | None
+) -> tuple[np.ndarray, np.ndarray]:
     """First and last samples of a box of some width, at least 3, off the border by 2."""
     sizes = np.array(shape[::-1])
     widths = rng.integers(3, sizes - 3) if width is None else np.full(3, width)
@@ -143,7 +154,7 @@ def _random_box(rng, shape, width):
     return low, low + widths - 1
 
 
-def _box(low, high):
+def _box(low: np.ndarray, high: np.ndarray) -> tuple[slice, ...]:
     """The index of a box in samples [z, y, x]."""
     return tuple(slice(a, b + 1) for a, b in zip(low[::-1], high[::-1]))
 
@@ -151,7 +162,7 @@ def _box(low, high):
 # ---- cameras
 
 
-def camera_inside(field, rng):
+def camera_inside(field: ClosedField, rng: np.random.Generator) -> Camera:
     """A camera in the core, a voxel from its boundary; half of them exactly on a sample.
 
     Returns
@@ -165,25 +176,31 @@ def camera_inside(field, rng):
     return _camera(position, position + _direction(rng), rng)
 
 
-def camera_outside(field, rng):
+def camera_outside(field: ClosedField, rng: np.random.Generator) -> Camera:
     """A camera outside the volume that looks at the core, perspective or parallel."""
     sizes = np.array(field.values.shape[::-1])
     target = rng.uniform(field.low, field.high)
     if rng.integers(2):
         target = np.round(target)
     position = target + rng.uniform(1.8, 4) * np.linalg.norm(sizes) * _direction(rng)
-    return _camera(position, target, rng, rng.integers(2), 0.3 * sizes.max())
+    return _camera(position, target, rng, bool(rng.integers(2)), float(0.3 * sizes.max()))
 
 
-def _camera(position, target, rng, parallel=False, scale=1.0):
+def _camera(
+    position: np.ndarray,
+    target: np.ndarray,
+    rng: np.random.Generator,
+    parallel: bool = False,
+    scale: float = 1.0,
+) -> Camera:
     forward = target - position
     up = np.eye(3)[np.argmin(np.abs(forward))]
     angle = rng.uniform(10, 40) if parallel else rng.uniform(10, 150)
-    points = (tuple(map(float, v)) for v in (position, target, up))
-    return Camera(*points, view_angle=angle, parallel=bool(parallel), parallel_scale=float(scale))
+    place, seen, upwards = (tuple(map(float, v)) for v in (position, target, up))
+    return Camera(place, seen, upwards, angle, parallel, scale)
 
 
-def _direction(rng):
+def _direction(rng: np.random.Generator) -> np.ndarray:
     """A unit vector: any, or along an axis or a diagonal, whose rays meet edges and corners."""
     special = list(itertools.product((-1.0, 0.0, 1.0), repeat=3))
     special.remove((0.0, 0.0, 0.0))
@@ -194,7 +211,9 @@ def _direction(rng):
 # ---- judging
 
 
-def slipped(depth, field, camera):
+def slipped(
+    depth: np.ndarray, field: ClosedField, camera: caster.Camera
+) -> tuple[np.ndarray, np.ndarray, int]:
     """Find the rays that go wrong.
 
     Parameters
@@ -220,7 +239,9 @@ def slipped(depth, field, camera):
     return due & ~hit, off & hit, int(due.sum() + off.sum())
 
 
-def _meets(origins, directions, low, high):
+def _meets(
+    origins: np.ndarray, directions: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> np.ndarray:
     """Which rays meet a box."""
     enter, leave = caster.clip_to_box(origins.T, directions.T, 0.0, np.inf, low, high)
     return enter <= leave
@@ -241,7 +262,7 @@ class _Count:
     first: str = ""
 
 
-def count_cracks(kind, rays, side=64, seed=0):
+def count_cracks(kind: str, rays: int, side: int = 64, seed: int = 0) -> Outcome:
     """Cast rays at closed surfaces, from inside and outside, and count those that go wrong.
 
     Rates and the ways to divide the work take turns. The images are as large as it takes to have
@@ -282,7 +303,15 @@ def count_cracks(kind, rays, side=64, seed=0):
     )
 
 
-def _look_around(field, rate, size, division, rng, about, count):
+def _look_around(
+    field: ClosedField,
+    rate: float,
+    size: tuple[int, int],
+    division: tuple[dict[str, bool], float | None],
+    rng: np.random.Generator,
+    about: str,
+    count: _Count,
+) -> None:
     """Look at a volume from inside and outside; add to the count."""
     arguments, share = division
     view = Isosurface(compressed_field(field, rate), ISOVALUE, size, **arguments)
@@ -307,14 +336,14 @@ def _look_around(field, rate, size, division, rng, about, count):
     view.close()
 
 
-def _least_budget(view):
+def _least_budget(view: Isosurface) -> int:
     """The least memory budget that a view can work with, which its last image tells."""
     if not view.statistics()["passes"]:
         view.render()
     return view.statistics()["memory"]["least_budget"]
 
 
-def compressed_field(field, rate):
+def compressed_field(field: ClosedField, rate: float) -> vtkImageData:
     """Compress a closed field, at a higher rate where it is no longer closed at this one.
 
     Raises
@@ -330,7 +359,7 @@ def compressed_field(field, rate):
     raise ValueError("the field is closed at no rate")
 
 
-def _case(kind, settings):
+def _case(kind: str, settings: Settings) -> Outcome:
     return count_cracks(kind, settings.rays // len(RATES))
 
 

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
 
-def noise(shape, seed=0):
+def noise(shape: tuple[int, ...], seed: int = 0) -> np.ndarray:
     """White noise [z, y, x]: every cell crosses zero, many rays find several roots in one."""
     return np.random.default_rng(seed).normal(size=shape).astype(np.float32)
 
 
-def marschner_lobb(n, frequency=6.0, alpha=0.25):
+def marschner_lobb(n: int, frequency: float = 6.0, alpha: float = 0.25) -> np.ndarray:
     """The signal of Marschner and Lobb (1994), which everyone's resampling is judged by."""
     z, y, x = np.meshgrid(*[np.linspace(-1, 1, n)] * 3, indexing="ij")
     ring = np.cos(2 * np.pi * frequency * np.cos(np.pi * np.hypot(x, y) / 2))
@@ -20,7 +22,7 @@ def marschner_lobb(n, frequency=6.0, alpha=0.25):
     return signal.astype(np.float32)
 
 
-def blobs(shape, seed=0, waves=3):
+def blobs(shape: tuple[int, ...], seed: int = 0, waves: int = 3) -> np.ndarray:
     """A smooth random field, periodic waves along each axis, about -1 to 1."""
     rng = np.random.default_rng(seed)
     axes = np.meshgrid(*[np.linspace(0, 2 * np.pi, n) for n in shape], indexing="ij")
@@ -31,21 +33,21 @@ def blobs(shape, seed=0, waves=3):
     return (field / 3).astype(np.float32)
 
 
-def coordinates(shape):
+def coordinates(shape: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Coordinates x, y and z of the samples, each an array [z, y, x], from the first sample on."""
     z, y, x = np.indices(shape, dtype=float)
     return x, y, z
 
 
 def make_image(
-    values,
-    name="field",
-    cells=False,
-    origin=(0, 0, 0),
-    spacing=(1, 1, 1),
-    direction=None,
-    extent_start=(0, 0, 0),
-):
+    values: np.ndarray,
+    name: str = "field",
+    cells: bool = False,
+    origin: Sequence[float] = (0, 0, 0),
+    spacing: Sequence[float] = (1, 1, 1),
+    direction: np.ndarray | None = None,
+    extent_start: Sequence[int] = (0, 0, 0),
+) -> vtkImageData:
     """Place values [z, y, x] or [z, y, x, component] in a ``vtkImageData``."""
     values = np.asarray(values)
     size = np.array(values.shape[:3][::-1]) + bool(cells)

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkImageData
 
-from ..camera import orbit_camera
+from ..camera import Camera, orbit_camera
 from ..measure import tolerances
 from ..oracle import caster
-from .case import Case
+from .case import Case, Outcome, Settings
 from .fields import blobs, noise
 from .scene import check_depths, check_views, compressed, decoded, looking, parallel
 
@@ -21,11 +24,11 @@ _NOISE = tolerances.GRAZING_FRACTION_NOISE
 _ROTATION = np.linalg.qr(np.random.default_rng(8).normal(size=(3, 3)))[0]
 
 
-def _field(**geometry):
+def _field(**geometry: Any) -> vtkImageData:
     return compressed(blobs(_SHAPE, 7), **geometry)
 
 
-def _placed(settings, user=None, **geometry):
+def _placed(settings: Settings, user: np.ndarray | None = None, **geometry: Any) -> Outcome:
     """In perspective and in parallel projection, from a side of the orbit each."""
     image = _field(**geometry)
     bounds = image.GetBounds()
@@ -35,11 +38,11 @@ def _placed(settings, user=None, **geometry):
         bounds = tuple(np.stack([world.min(axis=1), world.max(axis=1)], axis=1).ravel())
     first, second = (orbit_camera(bounds, i, 3) for i in (0, 1))
     reach = np.linalg.norm(np.subtract(second.position, second.focal_point))
-    cameras = first, parallel(second, reach / 3)
+    cameras = first, parallel(second, float(reach / 3))
     return check_views(settings, image, (_ISOVALUE,), cameras, user=user)
 
 
-def _stretched(spacing, settings):
+def _stretched(spacing: tuple[float, float, float], settings: Settings) -> Outcome:
     """Beams and plates, from as near as their middle side asks for."""
     image = _field(spacing=spacing)
     low, high = np.array(image.GetBounds()).reshape(3, 2).T
@@ -50,20 +53,20 @@ def _stretched(spacing, settings):
     return check_views(settings, image, (_ISOVALUE,), cameras)
 
 
-def _matrix(linear):
+def _matrix(linear: np.ndarray | Sequence[Sequence[float]]) -> np.ndarray:
     matrix = np.eye(4)
     matrix[:3, :3] = linear
     matrix[:3, 3] = 3, -20, 8
     return matrix
 
 
-def _shape(shape, settings):
+def _shape(shape: tuple[int, ...], settings: Settings) -> Outcome:
     image = compressed(noise(shape, 11))
     cameras = [orbit_camera(image, i, 3) for i in range(2)]
     return check_views(settings, image, (0.1,), cameras, grazing=_NOISE)
 
 
-def _long(axis, settings):
+def _long(axis: int, settings: Settings) -> Outcome:
     """65536 samples along an axis, seen from beside near its far end."""
     values = np.moveaxis(noise((5, 6, 65536), 12), 2, 2 - axis)
     centre = np.roll([65500.0, 2.5, 2.0], axis)
@@ -72,7 +75,7 @@ def _long(axis, settings):
     return check_depths(settings, compressed(values), 0.2, camera, grazing=_NOISE)
 
 
-def _along_a_long_one(settings):
+def _along_a_long_one(settings: Settings) -> Outcome:
     """Rays that go 65000 voxels before they hit."""
     values = np.zeros((4, 4, 65536), np.float32)
     values[..., 65000:] = 0.3 + noise((4, 4, 536), 13) / 10
@@ -83,13 +86,18 @@ def _along_a_long_one(settings):
 # --- cameras ---------------------------------------------------------------------------------------
 
 
-def _from(position, settings, towards=(0.3, 0.5, -0.2), angle=70.0):
+def _from(
+    position: Sequence[float],
+    settings: Settings,
+    towards: Sequence[float] = (0.3, 0.5, -0.2),
+    angle: float = 70.0,
+) -> Outcome:
     """From a place in the volume or at its border."""
     camera = looking(position, np.add(position, towards), (0.1, 0.2, 1), angle)
     return check_depths(settings, _field(), _ISOVALUE, camera)
 
 
-def _along_axes(settings):
+def _along_axes(settings: Settings) -> Outcome:
     """Parallel rays along an axis, at two pixels a voxel: every other lies on a plane of voxels."""
     image = compressed(blobs((25, 25, 25), 6))
     cameras = []
@@ -102,7 +110,7 @@ def _along_axes(settings):
     return check_views(settings, image, (0.05,), cameras, size=(49, 49), grazing=1 / 8)
 
 
-def _through_corners(settings):
+def _through_corners(settings: Settings) -> Outcome:
     """Rays all of whose samples lie in faces, edges or corners of cells."""
     image = compressed(blobs((17, 17, 17), 6))
     cameras = [
@@ -112,7 +120,7 @@ def _through_corners(settings):
     return check_views(settings, image, (0.05,), cameras, size=(33, 33), grazing=1 / 8)
 
 
-def _angle(degrees, settings):
+def _angle(degrees: float, settings: Settings) -> Outcome:
     """From so far that the volume fills this view angle, or from two voxels beside its centre."""
     distance = 16 / np.tan(np.radians(degrees) / 2)
     towards = np.array([0.5, 0.7, 0.3])
@@ -121,7 +129,7 @@ def _angle(degrees, settings):
     return check_depths(settings, _field(), _ISOVALUE, camera)
 
 
-def _clipped(settings):
+def _clipped(settings: Settings) -> Outcome:
     """Near and far planes that cut through the surface."""
     image = _field()
     camera = orbit_camera(image, 1, 4)
@@ -129,7 +137,7 @@ def _clipped(settings):
     return check_depths(settings, image, _ISOVALUE, camera, clip=(distance - 4.0, distance + 3.0))
 
 
-def _zoomed(scale, settings):
+def _zoomed(scale: float, settings: Settings) -> Outcome:
     """A cell that the surface crosses, and less of it, fills the image."""
     image = _field()
     camera = orbit_camera(image, 1, 4)
@@ -141,7 +149,7 @@ def _zoomed(scale, settings):
     return check_views(settings, image, (_ISOVALUE,), cameras)
 
 
-def _place(image, camera):
+def _place(image: vtkImageData, camera: Camera) -> np.ndarray:
     """Where the caster's ray from a camera to its focal point, or one beside it, meets the surface."""
     eye = caster.Camera(camera.position, camera.focal_point, camera.view_up, camera.view_angle)
     found = caster.cast(decoded(image), _ISOVALUE, eye, (9, 9))
@@ -150,11 +158,11 @@ def _place(image, camera):
     return origins[at] + found.depth.flat[at] * directions[at]
 
 
-def _image(size, settings):
+def _image(size: tuple[int, int], settings: Settings) -> Outcome:
     return check_depths(settings, _field(), _ISOVALUE, size=size)
 
 
-def _large_image(settings):
+def _large_image(settings: Settings) -> Outcome:
     """One image of 67 million rays, of which the caster casts some."""
     once = replace(settings, repeat=0)
     return check_depths(once, _field(), _ISOVALUE, size=(8192, 8192), sample=20_000)

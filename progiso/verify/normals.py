@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkRenderingCore import vtkLight
 from vtkmodules.vtkRenderingOpenGL2 import (
     vtkCameraPass,
@@ -16,9 +19,9 @@ from vtkmodules.vtkRenderingOpenGL2 import (
     vtkTextureObject,
 )
 
-from ..camera import orbit_camera
+from ..camera import Camera, orbit_camera
 from ..measure import tolerances
-from .case import Case, Outcome
+from .case import Case, Outcome, Settings
 from .fields import coordinates, noise
 from .scene import Picture, compressed, decoded, looking
 
@@ -31,7 +34,9 @@ class LitPicture(Picture):
     The picture is drawn in float32, by way of VTK's render passes, so that no level is rounded.
     """
 
-    def __init__(self, image, isovalue, size, **settings):
+    def __init__(
+        self, image: vtkImageData, isovalue: float, size: tuple[int, int], **settings: Any
+    ) -> None:
         super().__init__(image, isovalue, size, **settings)
         material = self.prop.GetProperty()
         material.SetAmbient(0)
@@ -49,7 +54,7 @@ class LitPicture(Picture):
         self._frame.SetDelegatePass(camera)
         self.renderer.SetPass(self._frame)
 
-    def normals(self, camera):
+    def normals(self, camera: Camera) -> np.ndarray:
         """Unit vectors in world coordinates [row, column, axis], to where values are lower.
 
         Zero where there is no surface; row 0 is the top of the image.
@@ -59,7 +64,7 @@ class LitPicture(Picture):
         length = np.linalg.norm(normals, axis=2, keepdims=True)
         return np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
 
-    def _light(self, camera, sign):
+    def _light(self, camera: Camera, sign: int) -> np.ndarray:
         """The picture by light from the axes' one side, or the other."""
         self.renderer.RemoveAllLights()
         for axis in np.eye(3):
@@ -79,8 +84,16 @@ class LitPicture(Picture):
 
 
 def check_normals(
-    settings, image, isovalue, gradient=None, camera=None, limit=None, inner=0.0, note="", **options
-):
+    settings: Settings,
+    image: vtkImageData,
+    isovalue: float,
+    gradient: Callable[[np.ndarray], np.ndarray] | None = None,
+    camera: Camera | None = None,
+    limit: float = tolerances.NORMAL_DEGREES,
+    inner: float = 0.0,
+    note: str = "",
+    **options: Any,
+) -> Outcome:
     """Render normals and hold them against a gradient.
 
     Parameters
@@ -145,7 +158,7 @@ def check_normals(
     )
 
 
-def _degrees(a, b):
+def _degrees(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Angles between vectors, exact also where they are small."""
     a, b = (v / np.linalg.norm(v, axis=1, keepdims=True).clip(1e-300) for v in (a, b))
     half = np.linalg.norm(a - b, axis=1) / 2
@@ -155,10 +168,10 @@ def _degrees(a, b):
 class _Differences:
     """Central differences of samples, one-sided at the border, and trilinear between them."""
 
-    def __init__(self, values):
+    def __init__(self, values: np.ndarray) -> None:
         self._gradients = np.stack(np.gradient(values.astype(float))[::-1], axis=-1)
 
-    def __call__(self, places):
+    def __call__(self, places: np.ndarray) -> np.ndarray:
         shape = np.array(self._gradients.shape[:3][::-1])
         cell = np.clip(np.floor(places), 0, shape - 2).astype(int)
         local = places - cell
@@ -173,7 +186,7 @@ class _Differences:
 # --- fields with a gradient ------------------------------------------------------------------------
 
 
-def _quadric(settings, scale=1.0, **geometry):
+def _quadric(settings: Settings, scale: float = 1.0, **geometry: Any) -> Outcome:
     """A polynomial of second order: its central differences are its gradient, between samples too."""
     shape, centre = (22, 26, 24), np.array([11.3, 12.8, 10.4])
     a, b = np.diag([1.0, 0.6, 0.8]), np.array([[0, 0.2, -0.1], [0.2, 0, 0.15], [-0.1, 0.15, 0]])
@@ -190,7 +203,7 @@ def _quadric(settings, scale=1.0, **geometry):
     )
 
 
-def _sphere(radius, settings):
+def _sphere(radius: float, settings: Settings) -> Outcome:
     """A distance: differences over two voxels are off by what the radius is to its square."""
     size = int(2 * radius + 8)
     centre = np.array([0.37, 0.61, 0.13]) + size / 2 - 0.5
@@ -204,7 +217,7 @@ def _sphere(radius, settings):
     )
 
 
-def _plane(settings):
+def _plane(settings: Settings) -> Outcome:
     """A linear field, to the border of the volume: the same normal everywhere."""
     x, y, z = coordinates((12, 14, 16))
     values = x + 0.8 * y + 0.5 * z
@@ -221,7 +234,7 @@ def _plane(settings):
 # --- against double precision ----------------------------------------------------------------------
 
 
-def _noise(cached, settings):
+def _noise(cached: bool, settings: Settings) -> Outcome:
     """White noise: across every face of cells, blocks and macrocells."""
     return check_normals(
         settings,
@@ -232,7 +245,7 @@ def _noise(cached, settings):
     )
 
 
-def _block_corner(cached, settings):
+def _block_corner(cached: bool, settings: Settings) -> Outcome:
     """Looks at the corner of eight blocks from so near that a pixel is a thousandth of a voxel."""
     values = noise((16, 16, 16), 18)
     values[7:9, 7:9, 7:9] = np.linspace(-1, 1, 8).reshape(2, 2, 2)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import groupby
+from typing import Any
 
 from rich.console import Console
 from rich.table import Table
@@ -33,7 +35,7 @@ _ABOUT = """\
   those that can hit do, and how many of them do not have the caster's own hit."""
 
 
-def print_table(rows):
+def print_table(rows: Sequence[dict[str, Any]]) -> None:
     """Print rows on standard output.
 
     Parameters
@@ -60,7 +62,7 @@ def print_table(rows):
     Console().print(table)
 
 
-def markdown(document):
+def markdown(document: dict[str, Any]) -> str:
     """Rows as a page.
 
     Parameters
@@ -98,7 +100,7 @@ def markdown(document):
     return "\n".join(lines).rstrip() + "\n"
 
 
-def _busy(run):
+def _busy(run: dict[str, Any]) -> str:
     """A warning where others kept the machine from its work."""
     others = run["others_cores"]
     if others is None or others < 0.1:
@@ -108,10 +110,10 @@ def _busy(run):
     )
 
 
-def _error(row):
+def _error(row: dict[str, Any]) -> str:
     return "∞" if row["error"] is None else f"{_figure(row['error'])} {row['unit']}".rstrip()
 
 
-def _figure(value):
+def _figure(value: float | None) -> str:
     """Two digits: a table of orders of magnitude."""
     return "∞" if value is None else f"{value:.2g}"

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 
 from ..camera import Camera, orbit_camera
 from ..compression import compress, decompress
 from ..geometry import samples_of
 from ..measure import tolerances
-from ..measure.agreement import compare
+from ..measure.agreement import Agreement, compare
 from ..measure.isosurface import Isosurface
 from ..measure.view import opposite
 from ..oracle import caster
-from .case import Outcome, worst_of
+from .case import Outcome, Settings, worst_of
 from .fields import make_image
 
 #: Seconds that a GPU is kept busy before an image's time counts; it has been busy not long ago.
@@ -28,12 +31,12 @@ _TOLD = 1e-3
 RATE = 32
 
 
-def compressed(values, rate=RATE, **geometry):
+def compressed(values: np.ndarray, rate: float = RATE, **geometry: Any) -> vtkImageData:
     """A compressed volume of values [z, y, x]; `geometry` as `fields.make_image` has it."""
     return compress(make_image(values, **geometry), rate=rate)
 
 
-def decoded(image, user=None):
+def decoded(image: vtkImageData, user: np.ndarray | None = None) -> caster.Volume:
     """What libzfp decodes of a compressed volume, as the caster takes it."""
     plain = decompress(image)
     cells = plain.GetPointData().GetScalars() is None
@@ -59,7 +62,15 @@ class Picture(Isosurface):
         Of `benchmarks.ours.Isosurface`.
     """
 
-    def __init__(self, image, isovalue, size, user=None, clip=None, **settings):
+    def __init__(
+        self,
+        image: vtkImageData,
+        isovalue: float,
+        size: tuple[int, int],
+        user: np.ndarray | None = None,
+        clip: tuple[float, float] | None = None,
+        **settings: Any,
+    ) -> None:
         super().__init__(image, isovalue, size, **settings)
         self._clip = clip
         if user is not None:
@@ -67,12 +78,12 @@ class Picture(Isosurface):
             matrix.DeepCopy(np.asarray(user, float).ravel())
             self.prop.SetUserMatrix(matrix)
 
-    def look(self, camera):
+    def look(self, camera: Camera) -> None:
         super().look(camera)
         if self._clip is not None:
             self.renderer.GetActiveCamera().SetClippingRange(self._clip)
 
-    def time(self, camera, repeat):
+    def time(self, camera: Camera, repeat: int) -> float:
         """Least milliseconds of an image, another one having been rendered before each.
 
         With `repeat` 0 those of the first image.
@@ -84,27 +95,27 @@ class Picture(Isosurface):
             times.append(self.render_from(camera))
         return min(times)
 
-    def rays(self):
+    def rays(self) -> tuple[caster.Camera, tuple[float, float]]:
         """Camera and clipping range as the caster takes them."""
         camera = self.renderer.GetActiveCamera()
         return caster.Camera.from_vtk(camera), camera.GetClippingRange()
 
 
 def check_depths(
-    settings,
-    image,
-    isovalue,
-    camera=None,
-    size=None,
-    grazing=tolerances.GRAZING_FRACTION,
-    hits=True,
-    user=None,
-    note="",
-    volume=None,
-    level=None,
-    sample=None,
-    **options,
-):
+    settings: Settings,
+    image: vtkImageData,
+    isovalue: float,
+    camera: Camera | None = None,
+    size: tuple[int, int] | None = None,
+    grazing: float = tolerances.GRAZING_FRACTION,
+    hits: bool = True,
+    user: np.ndarray | None = None,
+    note: str = "",
+    volume: caster.Volume | None = None,
+    level: float | None = None,
+    sample: int | None = None,
+    **options: Any,
+) -> Outcome:
     """Render an image, time it, and hold its depths against the caster.
 
     Parameters
@@ -179,12 +190,18 @@ def check_depths(
     )
 
 
-def _wrong_hits(found):
+def _wrong_hits(found: Agreement) -> str:
     count = int(np.isinf(found.error).sum())
     return f"{count} rays hit where they cannot, or miss what is certain" if count else ""
 
 
-def check_views(settings, image, isovalues, cameras=(None,), **options):
+def check_views(
+    settings: Settings,
+    image: vtkImageData,
+    isovalues: Sequence[float],
+    cameras: Sequence[Camera | None] = (None,),
+    **options: Any,
+) -> Outcome:
     """`check_depths` of all isovalues from all cameras: the worst of them."""
     options.setdefault("volume", decoded(image, options.get("user")))
     return worst_of(
@@ -194,12 +211,17 @@ def check_views(settings, image, isovalues, cameras=(None,), **options):
     )
 
 
-def parallel(camera, scale):
+def parallel(camera: Camera, scale: float) -> Camera:
     """A camera in parallel projection, its image twice `scale` high."""
     return replace(camera, parallel=True, parallel_scale=float(scale))
 
 
-def looking(position, focal_point, view_up=(0.0, 1.0, 0.0), view_angle=30.0):
+def looking(
+    position: Sequence[float] | np.ndarray,
+    focal_point: Sequence[float] | np.ndarray,
+    view_up: Sequence[float] | np.ndarray = (0.0, 1.0, 0.0),
+    view_angle: float = 30.0,
+) -> Camera:
     """A `progiso.Camera` of numbers of any kind."""
-    vectors = (tuple(map(float, v)) for v in (position, focal_point, view_up))
-    return Camera(*vectors, float(view_angle))
+    place, target, up = (tuple(map(float, v)) for v in (position, focal_point, view_up))
+    return Camera(place, target, up, float(view_angle))

@@ -7,38 +7,38 @@ from functools import partial
 import numpy as np
 
 from ..measure import tolerances
-from .case import Case
+from .case import Case, Outcome, Settings
 from .fields import blobs, coordinates, noise
 from .scene import check_depths, check_views, compressed, looking, parallel
 
 _SHAPE = (28, 25, 31)
 
 
-def _reference(settings):
+def _reference(settings: Settings) -> Outcome:
     """What others' times are compared with."""
     return check_depths(settings, compressed(blobs(_SHAPE, 3)), 0.1)
 
 
-def _distance(shape, radius=9.0):
+def _distance(shape: tuple[int, ...], radius: float = 9.0) -> np.ndarray:
     """Voxels outside a sphere that stands off the grid."""
     x, y, z = coordinates(shape)
     centre = np.array(shape[::-1]) / 2 - (0.37, 0.61, 0.13)
     return np.sqrt(sum((c - m) ** 2 for c, m in zip((x, y, z), centre))) - radius
 
 
-def _front(slope, height, settings):
+def _front(slope: float, height: float, settings: Settings) -> Outcome:
     """A shock front; the isovalues lie in its middle and on either shoulder."""
     values = height * np.tanh(slope / height * _distance(_SHAPE))
     image = compressed(values.astype(np.float32))
     return check_views(settings, image, [height * at for at in (0.0, 0.9, -0.999)])
 
 
-def _step(settings):
+def _step(settings: Settings) -> Outcome:
     image = compressed(np.where(_distance(_SHAPE) < 0, 1.0, 0.0).astype(np.float32))
     return check_views(settings, image, (0.5, 1e-6, 1 - 2.0**-20))
 
 
-def _gradients(settings):
+def _gradients(settings: Settings) -> Outcome:
     """From one end to the other the gradient goes from 1e-12 to 1e12 a voxel."""
     shape = (24, 24, 64)
     decades = np.linspace(-12, 12, shape[2])
@@ -46,19 +46,19 @@ def _gradients(settings):
     return check_views(settings, compressed(values.astype(np.float32)), (0.0, 1e-9, 1.0, 1e9))
 
 
-def _scaled(scale, settings):
+def _scaled(scale: float, settings: Settings) -> Outcome:
     values = blobs(_SHAPE, 5) * np.float32(scale)
     return check_depths(settings, compressed(values), 0.1 * float(np.float32(scale)))
 
 
-def _plateau(settings):
+def _plateau(settings: Settings) -> Outcome:
     """Within a few units in the last place of the isovalue everywhere."""
     steps = np.round(3 * noise(_SHAPE, 6))
     image = compressed((1 + steps * 2.0**-23).astype(np.float32))
     return check_depths(settings, image, 1 + 2.0**-24, grazing=_NOISE)
 
 
-def _flat_plateau(settings):
+def _flat_plateau(settings: Settings) -> Outcome:
     """A wide plateau at the isovalue that sinks by 1e-6 to its rim, and falls off steeply there."""
     distance = _distance(_SHAPE)
     values = 5 - 1e-6 * np.exp2(distance) - np.maximum(distance, 0)
@@ -66,24 +66,24 @@ def _flat_plateau(settings):
     return check_views(settings, image, (5 - 1e-6, 5 - 2e-6, 4.9999))
 
 
-def _checkerboard(settings):
+def _checkerboard(settings: Settings) -> Outcome:
     x, y, z = coordinates((15, 14, 17))
     image = compressed(np.where((x + y + z) % 2 == 0, 1.0, -1.0).astype(np.float32))
     return check_views(settings, image, (0.3, -0.9, 0.0), grazing=_NOISE)
 
 
-def _noise(cached, settings):
+def _noise(cached: bool, settings: Settings) -> Outcome:
     image = compressed(noise((18, 21, 16), 7))
     return check_views(settings, image, (0.0, 1.5, 2.5), grazing=_NOISE, cached=cached)
 
 
-def _thin_shell(settings):
+def _thin_shell(settings: Settings) -> Outcome:
     """A shell of a tenth of a voxel: what the samples hold of it are specks and needles."""
     values = np.exp(-((_distance(_SHAPE) / 0.1) ** 2))
     return check_views(settings, compressed(values.astype(np.float32)), (0.5, 0.01))
 
 
-def _sheet(settings):
+def _sheet(settings: Settings) -> Outcome:
     """One layer of samples, slanted, so that it is pierced from voxel to voxel."""
     x, y, z = coordinates(_SHAPE)
     values = np.where(np.abs(0.31 * x + 0.47 * y + z - 22) < 0.4, 1.0, 0.0)
@@ -93,19 +93,19 @@ def _sheet(settings):
 # --- cells and their cubics ------------------------------------------------------------------------
 
 
-def _product(centre, axes, size=9):
+def _product(centre: float, axes: tuple[int, ...], size: int = 9) -> np.ndarray:
     """The product of the coordinates along some axes, about a point: one trilinear field, exactly."""
     factors = [c - centre for c in coordinates((size,) * 3)]
     return np.prod([factors[axis] for axis in axes], axis=0).astype(np.float32)
 
 
-def _saddles(settings):
+def _saddles(settings: Settings) -> Outcome:
     """Faces and bodies of cells whose corners alternate, at and about their saddle's value."""
     image = compressed(_product(4.5, (0, 1, 2), 10))
     return check_views(settings, image, (0.0, 1e-7, -1e-7, 1e-3, -1e-3, 0.125), grazing=_SINGULAR)
 
 
-def _root_of_order(order, settings):
+def _root_of_order(order: int, settings: Settings) -> Outcome:
     """Rays along the diagonal of a product of coordinates, which they see as a power of the way."""
     axes = tuple(range(order))
     towards = np.array([1.0, 1.0, 1.0 if order == 3 else 0.0])
@@ -117,12 +117,13 @@ def _root_of_order(order, settings):
     )
 
 
-def _odd(size):
+def _odd(size: tuple[int, int]) -> tuple[int, int]:
     """A size with a pixel in its middle."""
-    return tuple(n // 2 * 2 + 1 for n in size)
+    width, height = (n // 2 * 2 + 1 for n in size)
+    return width, height
 
 
-def _touching(settings):
+def _touching(settings: Settings) -> Outcome:
     """Rays that touch the surface in one point: the square of the way, seen from where it is not met."""
     camera = parallel(looking((-16, -16, 4), (4, 4, 4), (0, 0, 1)), 1.5)
     image = compressed(-_product(4.0, (0, 1)))
@@ -131,13 +132,13 @@ def _touching(settings):
     )
 
 
-def _square(settings):
+def _square(settings: Settings) -> Outcome:
     """Rays in planes of constant z: a cell's cubic has no cube."""
     camera = parallel(looking((-30, -20, 8), (8, 9, 8), (0, 0, 1)), 9)
     return check_depths(settings, compressed(noise((17, 19, 17), 8)), 0.3, camera, grazing=_NOISE)
 
 
-def _line(settings):
+def _line(settings: Settings) -> Outcome:
     """Rays along an axis: the interpolant is linear in every cell."""
     cameras = []
     for axis in range(3):
@@ -147,24 +148,24 @@ def _line(settings):
     return check_views(settings, compressed(noise((17,) * 3, 9)), (0.3,), cameras, grazing=_NOISE)
 
 
-def _extruded(seed=10):
+def _extruded(seed: int = 10) -> np.ndarray:
     """Noise in y and z that does not change along x."""
     return np.repeat(noise((17, 17, 1), seed), 17, axis=2)
 
 
-def _constant(settings):
+def _constant(settings: Settings) -> Outcome:
     """Along the rays nothing changes: none of them crosses a surface."""
     camera = parallel(looking((-30, 8, 8), (8, 8, 8), (0, 0, 1)), 9)
     return check_depths(settings, compressed(_extruded()), 0.3, camera, hits=False)
 
 
-def _nearly_constant(settings):
+def _nearly_constant(settings: Settings) -> Outcome:
     """Rays that change cells across their way once in 95: all coefficients are nearly equal."""
     camera = parallel(looking((-30, 8.4, 8.28), (8, 8, 8), (0, 0, 1)), 9)
     return check_depths(settings, compressed(_extruded()), 0.3, camera, grazing=_NOISE)
 
 
-def _zero(settings):
+def _zero(settings: Settings) -> Outcome:
     """Cells that are zero throughout, at isovalue zero: inside, and the surface lies at their rim."""
     values = np.minimum(np.round(4 * blobs((24, 20, 28), 11)), 0)
     image = compressed(values.astype(np.float32))

@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import multiprocessing
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor
+from typing import Any
 
 from . import compression, cracks, geometry, normals, stiff, values
-from .case import row_of
+from .case import Case, Settings, row_of
+
+#: Called with number, section and case before each.
+Started = Callable[[int, str, Case], None]
 
 SECTIONS = {
     "Stiff fields": stiff.CASES,
@@ -18,7 +23,7 @@ SECTIONS = {
 }
 
 
-def cases(quick=False, containing=""):
+def cases(quick: bool = False, containing: str = "") -> list[tuple[str, Case]]:
     """List what is to be measured.
 
     Parameters
@@ -41,7 +46,12 @@ def cases(quick=False, containing=""):
     ]
 
 
-def measure(listed, settings, started=None, jobs=1):
+def measure(
+    listed: Sequence[tuple[str, Case]],
+    settings: Settings,
+    started: Started | None = None,
+    jobs: int = 1,
+) -> list[dict[str, Any]]:
     """Measure cases.
 
     Parameters
@@ -70,19 +80,23 @@ def measure(listed, settings, started=None, jobs=1):
         ]
 
 
-def _measured(started, number, section, case, settings):
+def _measured(
+    started: Started | None, number: int, section: str, case: Case, settings: Settings
+) -> dict[str, Any]:
     if started is not None:
         started(number, section, case)
     return row_of(section, case, settings)
 
 
-def _awaited(started, number, section, case, row):
+def _awaited(
+    started: Started | None, number: int, section: str, case: Case, row: Future[dict[str, Any]]
+) -> dict[str, Any]:
     if started is not None:
         started(number, section, case)
     return row.result()
 
 
-def _row_named(section, name, settings):
+def _row_named(section: str, name: str, settings: Settings) -> dict[str, Any]:
     """A case by its name: cases themselves do not go from process to process."""
     (case,) = (case for case in SECTIONS[section] if case.name == name)
     return row_of(section, case, settings)

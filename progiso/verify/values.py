@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +14,7 @@ from ..compression import compress
 from ..isosurface import make_isosurface
 from ..measure import tolerances
 from ..oracle import caster
-from .case import Case, Outcome, worst_of
+from .case import Case, Outcome, Settings, worst_of
 from .fields import blobs, coordinates, make_image, noise
 from .scene import RATE, Picture, check_depths, check_views, compressed, decoded
 
@@ -20,12 +22,12 @@ _SHAPE = (24, 20, 28)
 _NOISE = tolerances.GRAZING_FRACTION_NOISE
 
 
-def _scaled(scale, settings):
+def _scaled(scale: float, settings: Settings) -> Outcome:
     values = (blobs(_SHAPE, 9).astype(float) * scale).astype(np.float32)
     return check_views(settings, compressed(values), [0.1 * scale, -0.3 * scale])
 
 
-def _in_units(offset, scale, kind, settings):
+def _in_units(offset: float, scale: float, kind: type[np.number], settings: Settings) -> Outcome:
     """Values that float32 cannot hold, against the caster over the double-precision field."""
     field = blobs(_SHAPE, 9).astype(float)
     values = offset + scale * field
@@ -41,14 +43,14 @@ def _in_units(offset, scale, kind, settings):
     )
 
 
-def _largest(settings):
+def _largest(settings: Settings) -> Outcome:
     """White noise up to the largest float32, of either sign: differences go beyond."""
     values = noise(_SHAPE, 12)
     values = (values * (3.3e38 / np.abs(values).max())).astype(np.float32)
     return check_views(settings, compressed(values), (0.0, 1e38, -2e38), grazing=_NOISE)
 
 
-def _integers(kind, settings):
+def _integers(kind: str, settings: Settings) -> Outcome:
     """White noise over the whole range of an integer type."""
     about = np.iinfo(kind)
     values = np.random.default_rng(13).integers(about.min, about.max, _SHAPE, kind, endpoint=True)
@@ -58,23 +60,23 @@ def _integers(kind, settings):
     return check_views(settings, image, (middle, middle + 0.9 * reach), grazing=_NOISE)
 
 
-def _whole(isovalue, settings, **more):
+def _whole(isovalue: float, settings: Settings, **more: Any) -> Outcome:
     """A field of whole values: edges and plateaus lie at the isovalue exactly."""
     values = np.clip(np.round(blobs((24, 20, 28), 10) + 1), 0, 2).astype(np.float32)
     return check_depths(settings, compressed(values), isovalue, grazing=1.0, **more)
 
 
-def _outside(settings):
+def _outside(settings: Settings) -> Outcome:
     image = compressed(blobs(_SHAPE, 9))
     return check_views(settings, image, (100.0, -100.0, 1e300, -1e300), hits=False)
 
 
-def _constant(settings):
+def _constant(settings: Settings) -> Outcome:
     image = compressed(np.full((12, 12, 12), 3.0))
     return check_views(settings, image, (2.9, 3.0, 3.1), hits=False, grazing=1.0)
 
 
-def _negative_zero(settings):
+def _negative_zero(settings: Settings) -> Outcome:
     """Zeros of either sign are at the isovalue zero, and inside."""
     values = np.minimum(blobs(_SHAPE, 14), -0.0).astype(np.float32)
     signs = np.random.default_rng(15).choice([-0.0, 0.0], values.shape)
@@ -82,7 +84,7 @@ def _negative_zero(settings):
     return check_depths(settings, compressed(values), 0.0, grazing=1.0)
 
 
-def _digits(settings):
+def _digits(settings: Settings) -> Outcome:
     """An isovalue between two float32 values is not rounded to one of them."""
     values = np.float32(1000) + 2.0**-14 * np.round(64 * blobs(_SHAPE, 9))
     return check_depths(settings, compressed(values.astype(np.float32)), 1000 + 2.0**-14 * 4.5)
@@ -91,7 +93,7 @@ def _digits(settings):
 # --- what is refused -------------------------------------------------------------------------------
 
 
-def _refused(attempt, *texts):
+def _refused(attempt: Callable[[], object], *texts: str) -> Outcome:
     """Does the one error come that names all of `texts`?"""
     start = perf_counter()
     try:
@@ -106,19 +108,19 @@ def _refused(attempt, *texts):
     return Outcome(0.0 if named else 1.0, 0.0, milliseconds, "faults", note)
 
 
-def _not_finite(_settings):
+def _not_finite(_settings: Settings) -> Outcome:
     values = noise(_SHAPE, 16)
     values.flat[[3, 77, 1000]] = np.nan
     values.flat[[5, 99]] = np.inf, -np.inf
     return _refused(lambda: compressed(values), "3 NaN", "2 infinite")
 
 
-def _no_isovalue(_settings):
+def _no_isovalue(_settings: Settings) -> Outcome:
     image = compressed(blobs(_SHAPE, 9))
     return _refused(lambda: make_isosurface(image, float("nan")), "finite")
 
 
-def _no_isovalue_later(settings):
+def _no_isovalue_later(settings: Settings) -> Outcome:
     """Set at the property, past Python's checks."""
     view = Picture(compressed(blobs(_SHAPE, 9)), 0.1, settings.size)
     view.set_isovalue(float("nan"))
@@ -128,7 +130,7 @@ def _no_isovalue_later(settings):
         view.close()
 
 
-def _hidden(cached, settings):
+def _hidden(cached: bool, settings: Settings) -> Outcome:
     """NaN where there is to be a hole, in a ball and here and there: only cells of numbers have a surface."""
     shape = (26, 31, 29)
     place = np.stack(coordinates(shape), axis=-1)
