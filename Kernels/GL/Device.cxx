@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "GL/Device.h"
 
-#include "Shaders/Shared/SceneBlocks.glsl.h"
+#include "Shaders/Glsl.h"
 
 #include <algorithm>
 #include <chrono>
@@ -16,7 +16,6 @@
 
 namespace
 {
-constexpr std::int64_t MaximumGroups = 65535;      // on an axis, guaranteed by OpenGL 4.3
 constexpr std::int64_t LargestRead = 1 << 18;      // bytes read at once
 constexpr std::int64_t LargestStaging = 1 << 12;   // bytes that stay allocated between reads
 constexpr std::int64_t MostSnapshots = 8;          // under way at once, with room to spare
@@ -282,8 +281,9 @@ void Device::Run(Stage stage, const Launch& launch)
 
 void Device::Dispatch(Stage stage, std::int64_t groups)
 {
-  const GLuint x = static_cast<GLuint>(std::min(groups, MaximumGroups));
-  const GLuint y = static_cast<GLuint>((groups + MaximumGroups - 1) / MaximumGroups);
+  const std::int64_t most = glsl::MAX_GROUPS;
+  const GLuint x = static_cast<GLuint>(std::min(groups, most));
+  const GLuint y = static_cast<GLuint>((groups + most - 1) / most);
   this->Run(stage, [=]() { glDispatchCompute(x, y, 1); });
 }
 

@@ -4,7 +4,7 @@
 #ifndef PipelineScene_h
 #define PipelineScene_h
 
-#include "Shaders/Shared/SceneBlocks.glsl.h"
+#include "Shaders/Glsl.h"
 
 struct PipelineScene
 {

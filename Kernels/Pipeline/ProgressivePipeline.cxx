@@ -13,7 +13,7 @@ namespace
 {
 constexpr std::int64_t AutomaticValues = 1LL
   << 30; // bytes of decoded blocks where no budget is set
-constexpr std::int64_t PaletteBytes = 16 * (1 + 256);
+constexpr std::int64_t PaletteBytes = 16 * (1 + glsl::PALETTE_SIZE);
 constexpr std::int64_t LeastSlots = 2048; // any 64 rays find room for all that they need at once
 constexpr std::int64_t LeastPages = 512;  // of the block map, likewise
 constexpr std::int64_t SlotsPerPage = 8;  // else
@@ -159,8 +159,10 @@ void ProgressivePipeline::SetVolume(const PipelineVolume& volume)
   for (int axis = 0; axis < 3; ++axis)
   {
     this->Grid.Samples[axis] = volume.Samples[axis];
-    this->Grid.Blocks[axis] = static_cast<std::int32_t>(DivideUp(volume.Samples[axis], 4));
-    this->Grid.Macrocells[axis] = static_cast<std::int32_t>(DivideUp(volume.Samples[axis], 16));
+    this->Grid.Blocks[axis] =
+      static_cast<std::int32_t>(DivideUp(volume.Samples[axis], glsl::BLOCK_SIDE));
+    this->Grid.Macrocells[axis] =
+      static_cast<std::int32_t>(DivideUp(this->Grid.Blocks[axis], glsl::MACROCELL_SIDE));
     blocks *= this->Grid.Blocks[axis];
     macrocells *= this->Grid.Macrocells[axis];
   }
@@ -422,8 +424,8 @@ void ProgressivePipeline::Start()
   {
     this->MarkPassEnd(); // the first query is the image's start
   }
-  this->Gpu.Fill(Buffer::Hits, 0xFFFFFFFFu);
-  this->Gpu.Fill(Buffer::Normals, 0x80008000u);
+  this->Gpu.Fill(Buffer::Hits, glsl::NO_HIT);
+  this->Gpu.Fill(Buffer::Normals, glsl::NO_NORMAL);
   this->Gpu.Fill(Buffer::Layers, 0);
   if (this->Extent.Obstructed)
   {
@@ -652,7 +654,8 @@ bool ProgressivePipeline::DecodeVolume(std::vector<float>& values)
   {
     return false;
   }
-  values.resize(static_cast<std::size_t>(64 * this->Extent.Slots));
-  this->Gpu.Read(Buffer::CacheValues, 0, values.data(), 256 * this->Extent.Slots);
+  values.resize(static_cast<std::size_t>(glsl::SAMPLES_PER_BLOCK * this->Extent.Slots));
+  this->Gpu.Read(Buffer::CacheValues, 0, values.data(),
+    static_cast<std::int64_t>(values.size() * sizeof(float)));
   return this->GetError().empty();
 }

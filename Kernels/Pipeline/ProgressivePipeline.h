@@ -30,9 +30,9 @@ struct PipelineSettings
 {
   std::int64_t MemoryBudget = 0;  ///< bytes beside the compressed stream; 0: automatic
   std::int64_t LargestBuffer = 0; ///< bytes of one storage buffer; 0: what OpenGL allows
-  int SpeculationLimit = 64;      ///< 1: off
-  bool DecodeWholeVolume = true;  ///< where the budget has room for it
-  bool Detailed = false;          ///< stages are timed, distinct blocks counted
+  int SpeculationLimit = glsl::MAX_SPECULATION; ///< 1: off
+  bool DecodeWholeVolume = true;                ///< where the budget has room for it
+  bool Detailed = false;                        ///< stages are timed, distinct blocks counted
 };
 
 struct TimedPass : PassRecord
@@ -43,9 +43,9 @@ struct TimedPass : PassRecord
 /// What a pixel's ray has met. Of a translucent image the key is that of the last hit.
 struct PixelHit
 {
-  std::uint32_t Key = 0xFFFFFFFFu; ///< none
-  float Depth = 0.0f;              ///< parameter t of the first hit
-  std::uint32_t Surface = 0;       ///< first hit's isovalue, among those that show
+  std::uint32_t Key = glsl::NO_HIT;
+  float Depth = 0.0f;        ///< parameter t of the first hit
+  std::uint32_t Surface = 0; ///< first hit's isovalue, among those that show
 };
 
 class ProgressivePipeline

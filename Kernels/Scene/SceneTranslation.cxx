@@ -460,7 +460,7 @@ void ClipRay(const glsl::View& view, double px, double py, double& enter, double
 
 double HitParameter(const glsl::View& view, int x, int y, std::uint32_t key)
 {
-  if (key == 0xFFFFFFFFu)
+  if (key == glsl::NO_HIT)
   {
     return std::numeric_limits<double>::infinity();
   }
@@ -476,7 +476,7 @@ double HitParameter(const glsl::View& view, int x, int y, std::uint32_t key)
     leave = std::min(leave, std::max(first, last));
   }
   ClipRay(view, px, py, enter, leave);
-  return enter + (key + 0.5) / 4294967040.0 * (leave - enter);
+  return enter + (key + 0.5) / glsl::HIT_STEPS * (leave - enter);
 }
 
 double RayLength(const glsl::View& view, int x, int y, double t)

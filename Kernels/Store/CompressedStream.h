@@ -4,6 +4,8 @@
 #ifndef CompressedStream_h
 #define CompressedStream_h
 
+#include "Shaders/Glsl.h"
+
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -29,14 +31,18 @@ struct VolumeSize
     for (int axis = 0; axis < 3; ++axis)
     {
       this->Samples[axis] = samples[axis];
-      this->Blocks[axis] = (samples[axis] + std::int64_t(3)) / 4;
-      this->Macrocells[axis] = (samples[axis] + std::int64_t(15)) / 16;
+      this->Blocks[axis] = Parts(samples[axis], glsl::BLOCK_SIDE);
+      this->Macrocells[axis] = Parts(this->Blocks[axis], glsl::MACROCELL_SIDE);
     }
   }
   std::int64_t GetNumberOfBlocks() const { return Product(this->Blocks); }
   std::int64_t GetNumberOfMacrocells() const { return Product(this->Macrocells); }
 
 private:
+  static std::int64_t Parts(std::int64_t length, std::int64_t side)
+  {
+    return (length + side - 1) / side;
+  }
   static std::int64_t Product(const std::array<std::int64_t, 3>& n) { return n[0] * n[1] * n[2]; }
 };
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Store/StreamSegments.h"
 
+#include "Shaders/Glsl.h"
 #include "Status.h"
 
 #include <algorithm>
@@ -22,8 +23,9 @@ StreamSegment MakeSegment(
 {
   const std::int64_t layerBlocks = size.Blocks[0] * size.Blocks[1];
   const std::int64_t layerMacrocells = size.Macrocells[0] * size.Macrocells[1];
-  const std::int64_t begin = 4 * first * layerBlocks;
-  const std::int64_t end = std::min(4 * last * layerBlocks, size.GetNumberOfBlocks());
+  const std::int64_t begin = glsl::MACROCELL_SIDE * first * layerBlocks;
+  const std::int64_t end =
+    std::min(glsl::MACROCELL_SIDE * last * layerBlocks, size.GetNumberOfBlocks());
   const std::int64_t held = std::min(end + layerBlocks, size.GetNumberOfBlocks());
   const std::int64_t bits = stream.BlockBits;
   StreamSegment segment;
@@ -44,12 +46,12 @@ Status SplitStream(const CompressedStream& stream, const VolumeSize& size,
   const std::int64_t largest = std::min(largestBuffer, LargestSegment);
   const std::int64_t layerBits = size.Blocks[0] * size.Blocks[1] * stream.BlockBits;
   // beside the macrocells' own layers: one layer of blocks, and a word before the first bit
-  const std::int64_t layers = (8 * (largest - 8) / layerBits - 1) / 4;
+  const std::int64_t layers = (8 * (largest - 8) / layerBits - 1) / glsl::MACROCELL_SIDE;
   if (layers < 1)
   {
     return Status::Error("five layers of the compressed volume's blocks have ",
-      DivideUp(5 * layerBits, 8), " bytes, more than one GPU buffer can hold (", largest,
-      " bytes): lower the rate");
+      DivideUp((glsl::MACROCELL_SIDE + 1) * layerBits, 8),
+      " bytes, more than one GPU buffer can hold (", largest, " bytes): lower the rate");
   }
   segments.clear();
   for (std::int64_t first = 0; first < size.Macrocells[2]; first += layers)

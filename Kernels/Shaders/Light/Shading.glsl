@@ -3,20 +3,18 @@
 // are lower.
 
 #ifdef COLORED
-#define PALETTE 256
-
 // Colours over a range of values: low, 1 / (high - low).
 layout(std140, binding = PALETTE_BINDING) uniform Palette
 {
   vec4 Range;
-  vec4 Colors[PALETTE];
+  vec4 Colors[PALETTE_SIZE];
 }
 palette;
 
 vec3 PaletteColor(float value)
 {
-  float at = clamp((value - palette.Range.x) * palette.Range.y, 0.0, 1.0) * float(PALETTE - 1);
-  int below = min(int(at), PALETTE - 2);
+  float at = clamp((value - palette.Range.x) * palette.Range.y, 0.0, 1.0) * float(PALETTE_SIZE - 1);
+  int below = min(int(at), PALETTE_SIZE - 2);
   return mix(palette.Colors[below].rgb, palette.Colors[below + 1].rgb, at - float(below));
 }
 #endif

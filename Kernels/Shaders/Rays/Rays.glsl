@@ -6,8 +6,6 @@
 
 #include "Surface/Hits.glsl"
 
-#define HIT_STEPS 4294967040.0LF // hit keys: the ray's way through the volume in 32-bit fixed point
-
 struct Ray
 {
   dvec3 Origin;    // index space

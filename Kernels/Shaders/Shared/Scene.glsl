@@ -1,12 +1,10 @@
 // What every stage knows of the image, the camera, the isovalues, the volume and the cache.
 
-#include "Shared/SceneBlocks.glsl.h"
+#include "Shared/Constants.glsl.h"
 
-#define NONE 0xFFFFFFFFu    // no block, no slot, no map page, no pixel
-#define CLAIMED 0xFFFFFFFEu // a macrocell whose map page is being assigned in this very dispatch
-#define NO_HIT 0xFFFFFFFFu  // hit key of a ray that has met no surface
-#define NO_NORMAL 0x80008000u // of a pixel that has none yet; no packed normal has these bits
-#define MAX_GROUPS 65535u   // OpenGL 4.3's guaranteed number of work groups on an axis
+#define UNIFORM_BLOCK(name, number) layout(std140, binding = number) uniform name
+#define INSTANCE(name) name
+#include "Shared/SceneBlocks.glsl.h"
 
 // What follows from what the scene needs.
 #if defined(TRANSLUCENT) || defined(CROPPED)

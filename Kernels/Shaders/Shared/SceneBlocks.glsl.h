@@ -1,47 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
-// The uniform blocks, read by GLSL and by C++ (namespace glsl), one for each owner. Padding is
-// spelt out: std140 aligns a vector of three like one of four, but lets a scalar follow it closely.
-#ifndef SceneBlocks_glsl_h
-#define SceneBlocks_glsl_h
-
-#define VIEW_BINDING 0
-#define LOOK_BINDING 1
-#define VOLUME_BINDING 2
-#define CACHE_BINDING 3
-#define PALETTE_BINDING 4
-
-#ifdef __cplusplus
-#include <cstdint>
-
-#define UNIFORM_BLOCK(name, number) struct name
-#define INSTANCE(name)
-
-namespace glsl
-{
-using uint = std::uint32_t;
-using vec3 = float[3];
-using vec4 = float[4];
-using mat3 = float[3][4]; // columns
-using dvec3 = double[3];
-using ivec2 = std::int32_t[2];
-using ivec3 = std::int32_t[3];
-#else
-#define UNIFORM_BLOCK(name, number) layout(std140, binding = number) uniform name
-#define INSTANCE(name) name
-#endif
-
-const int MAX_LIGHTS = 16;
-const int MAX_ISOVALUES = 16;
-const int MAX_CLIPPING_PLANES = 16;
-const int ALL_REGIONS = (1 << 27) - 1;
-const uint PIXELS_PER_BLOCK_AHEAD = 4u; // that a ray must have for each block it looks ahead
-
-// Values of LitSides: a light reaches a surface from where the values are lower, from either side,
-// or only the side that is seen, as VTK's meshes are lit.
-const int ONE_SIDED = 0;
-const int TWO_SIDED = 1;
-const int LIT_LIKE_MESHES = 2;
+// The uniform blocks, one for each owner. GLSL (Scene.glsl) and C++ (Glsl.h) read this file. Padding
+// is spelt out: std140 aligns a vector of three like one of four, but a scalar follows it closely.
 
 // A vector that is Base + x PerX + y PerY at the pixel's centre (x, y).
 struct PixelVector
@@ -173,11 +133,3 @@ UNIFORM_BLOCK(Cache, CACHE_BINDING)
   uint Padding2;
 }
 INSTANCE(cache);
-
-#ifdef __cplusplus
-}
-#undef UNIFORM_BLOCK
-#undef INSTANCE
-#endif
-
-#endif

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+// What C++ shares with GLSL: constants, and uniform blocks as structures of the same layout.
+#ifndef Glsl_h
+#define Glsl_h
+
+#include <cstdint>
+
+namespace glsl
+{
+using uint = std::uint32_t;
+using vec3 = float[3];
+using mat3 = float[3][4]; // columns
+using dvec3 = double[3];
+using ivec2 = std::int32_t[2];
+using ivec3 = std::int32_t[3];
+
+#include "Shaders/Shared/Constants.glsl.h"
+
+#define UNIFORM_BLOCK(name, number) struct name
+#define INSTANCE(name)
+#include "Shaders/Shared/SceneBlocks.glsl.h"
+#undef UNIFORM_BLOCK
+#undef INSTANCE
+}
+
+#endif
