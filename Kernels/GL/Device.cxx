@@ -208,9 +208,9 @@ std::string Device::GetDescription()
 // What the stage reads of a compressed stream; null where it reads none, or there is none.
 const Device::StreamBuffers* Device::StreamOf(Stage stage) const
 {
-  for (Buffer buffer : PipelineStages()[static_cast<int>(stage)].Buffers)
+  for (const BufferUse& use : InfoOf(stage).Buffers)
   {
-    const auto found = this->Streams.find(buffer);
+    const auto found = this->Streams.find(use.Id);
     if (found != this->Streams.end())
     {
       return &found->second;
@@ -223,13 +223,13 @@ bool Device::Bind(Stage stage, GLuint stream, const StreamSegment* segment)
 {
   std::vector<Buffer> bound;
   std::vector<GLuint> names;
-  for (Buffer buffer : PipelineStages()[static_cast<int>(stage)].Buffers)
+  for (const BufferUse& use : InfoOf(stage).Buffers)
   {
-    const bool ofStream = buffer == Buffer::Stream || buffer == Buffer::ColorStream;
-    const GLuint name = ofStream ? stream : this->Names[Index(buffer)];
+    const bool ofStream = use.Id == Buffer::Stream || use.Id == Buffer::ColorStream;
+    const GLuint name = ofStream ? stream : this->Names[Index(use.Id)];
     if (name)
     {
-      bound.push_back(buffer);
+      bound.push_back(use.Id);
       names.push_back(name);
     }
   }

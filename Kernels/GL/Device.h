@@ -9,7 +9,7 @@
 #include "GL/ProgIsoGL.h"
 #include "GL/ProgramCache.h"
 #include "Shaders/BufferTable.h"
-#include "Shaders/StageTable.h"
+#include "Shaders/ShaderAssembler.h"
 #include "Store/StreamSegments.h"
 
 #include <array>

@@ -8,10 +8,10 @@
 namespace
 {
 // Compiles one shader into a program; the compiler's log where that fails.
-std::string AttachShader(GLuint program, GLenum type, const std::string& source)
+std::string AttachShader(GLuint program, GLenum type, const AssembledShader& source)
 {
   GLuint shader = glCreateShader(type);
-  const char* text = source.c_str();
+  const char* text = source.Text.c_str();
   glShaderSource(shader, 1, &text, nullptr);
   glCompileShader(shader);
   GLint compiled = 0;
@@ -23,7 +23,7 @@ std::string AttachShader(GLuint program, GLenum type, const std::string& source)
     GLsizei length = 0;
     glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &length, &log[0]);
     log.resize(length);
-    log = log.empty() ? "no log" : log;
+    log = log.empty() ? "no log" : NameFiles(log, source);
   }
   glAttachShader(program, shader);
   glDeleteShader(shader);
@@ -69,13 +69,15 @@ GLuint ProgramCache::Get(
 GLuint ProgramCache::Build(Stage stage, const std::vector<Buffer>& bound,
   const PipelineExtent& extent, std::string& error) const
 {
-  const StageInfo& info = PipelineStages()[static_cast<int>(stage)];
+  const StageInfo& info = InfoOf(stage);
   const GLuint program = glCreateProgram();
   const auto attach = [&](GLenum type, const std::string& file)
-  { return AttachShader(program, type, AssembleShader(file, bound, extent, this->ByExtensions)); };
-  const bool draws = stage == Stage::Composite || stage == Stage::Select;
-  const std::string log = draws
-    ? attach(GL_VERTEX_SHADER, "Output/Viewport.vert") + attach(GL_FRAGMENT_SHADER, info.File)
+  {
+    return AttachShader(
+      program, type, AssembleShader(info, file, bound, extent, this->ByExtensions));
+  };
+  const std::string log = info.Draws()
+    ? attach(GL_VERTEX_SHADER, ViewportShader) + attach(GL_FRAGMENT_SHADER, info.File)
     : attach(GL_COMPUTE_SHADER, info.File);
   glLinkProgram(program);
   GLint linked = 0;

@@ -6,7 +6,7 @@
 #define PipelinePrograms_h
 
 #include "GL/ProgIsoGL.h"
-#include "Shaders/StageTable.h"
+#include "Shaders/ShaderAssembler.h"
 
 #include <cstdint>
 #include <map>

@@ -95,7 +95,7 @@ PipelineExtent ProgressivePipeline::WholeVolume() const
 {
   PipelineExtent extent = this->Extent;
   extent.Cached = false;
-  extent.Slots = this->Grid.NumberOfBlocks;
+  extent.Slots = this->Extent.Blocks;
   extent.Pages = 0;
   return extent;
 }
@@ -170,6 +170,7 @@ void ProgressivePipeline::SetVolume(const PipelineVolume& volume)
   this->Grid.ColorBlockBits = volume.Colors.BlockBits;
   this->Grid.NumberOfBlocks = static_cast<std::uint32_t>(blocks);
   this->Grid.NumberOfMacrocells = static_cast<std::uint32_t>(macrocells);
+  this->Extent.Blocks = blocks;
   this->Extent.Macrocells = macrocells;
   this->Extent.Colored = volume.Colors.Data != nullptr;
   this->Extent.HiddenWords = static_cast<std::int64_t>(volume.Hidden.size());
@@ -245,10 +246,12 @@ bool ProgressivePipeline::LoadWholeVolume()
   {
     return false;
   }
-  this->Gpu.Dispatch(Stage::DecodeBlocks, DivideUp(this->Extent.Slots, 32));
-  if (this->Extent.Colored)
+  for (const Stage stage : { Stage::DecodeBlocks, Stage::DecodeColors })
   {
-    this->Gpu.Dispatch(Stage::DecodeColors, DivideUp(this->Extent.Slots, 32));
+    if (InfoOf(stage).IsNeeded(Moment::Volume, this->Extent))
+    {
+      this->Gpu.Dispatch(stage, GroupsFor(stage, this->Extent.Slots));
+    }
   }
   this->Gpu.FreeStreams();
   this->Gpu.Dispatch(Stage::BlockRanges, this->Extent.Macrocells);
@@ -274,7 +277,8 @@ bool ProgressivePipeline::ResizeCache(std::int64_t slots)
   this->Cache.CannotGrow = slots == this->MaximumSlots() ? 1 : 0;
   this->UploadCache();
   this->Gpu.Dispatch(Stage::CacheReset,
-    std::min<std::int64_t>(4096, DivideUp(std::max(slots, this->Extent.Macrocells), 256)));
+    std::min<std::int64_t>(
+      4096, GroupsFor(Stage::CacheReset, std::max(slots, this->Extent.Macrocells))));
   this->CacheAge = this->PassesSubmitted;
   this->Refusals = 0;
   this->TouchedSlots.clear();
@@ -413,10 +417,13 @@ void ProgressivePipeline::Start()
   this->PassesWithoutProgress = 0;
   this->Remaining = this->Extent.Pixels;
   this->Started = true;
-  std::set<Stage> forVolume = { Stage::BlockRanges };
-  if (!this->Extent.Cached)
+  std::set<Stage> forVolume;
+  for (const StageInfo& info : PipelineStages())
   {
-    forVolume.insert({ Stage::DecodeBlocks, Stage::DecodeColors });
+    if (info.IsNeeded(Moment::Volume, this->Extent))
+    {
+      forVolume.insert(info.Id);
+    }
   }
   this->Gpu.ForgetStages(forVolume);
   this->StartTime = Clock::now();
@@ -440,34 +447,37 @@ void ProgressivePipeline::Start()
   }
 }
 
-// The algorithm. Every dispatch's size is decided on the GPU; see Buffers.glsl for what flows
-// between the stages. Where the whole volume is decoded one pass casts all rays to their ends.
+// Runs a stage if this scene's passes need it. The GPU decides how many work groups it has.
+void ProgressivePipeline::RunStage(Stage stage)
+{
+  const StageInfo& info = InfoOf(stage);
+  if (!info.IsNeeded(Moment::Pass, this->Extent))
+  {
+    return;
+  }
+  if (info.GroupsInPass == OneGroup)
+  {
+    this->Gpu.Dispatch(stage, 1);
+  }
+  else
+  {
+    this->Gpu.DispatchIndirect(stage, static_cast<std::size_t>(info.GroupsInPass));
+  }
+}
+
+// The algorithm. See docs/reference/buffers.md for what flows between the stages. Where the whole
+// volume is decoded one pass casts all rays to their ends.
 void ProgressivePipeline::RunPass()
 {
-  if (this->Extent.Cached && this->Extent.Slots < this->Grid.NumberOfBlocks)
-  {
-    this->Gpu.DispatchIndirect(Stage::CacheAges, offsetof(ControlBlock, EvictGroups));
-    this->Gpu.DispatchIndirect(Stage::CacheEvict, offsetof(ControlBlock, EvictGroups));
-  }
-  this->Gpu.DispatchIndirect(Stage::CastRays, offsetof(ControlBlock, CastGroups));
-  if (!this->Extent.IsSinglePass())
-  {
-    this->Gpu.DispatchIndirect(Stage::CastFewRays, offsetof(ControlBlock, FewGroups));
-  }
-  if (this->Extent.Lit || this->Extent.Translucent || this->Extent.Colored)
-  {
-    this->Gpu.DispatchIndirect(Stage::FinishHits, offsetof(ControlBlock, NormalGroups));
-  }
-  if (this->Extent.Cached)
-  {
-    this->Gpu.DispatchIndirect(Stage::RequestBlocks, offsetof(ControlBlock, RequestGroups));
-    this->Gpu.DispatchIndirect(Stage::DecodeBlocks, offsetof(ControlBlock, DecodeGroups));
-  }
-  if (this->Extent.Cached && this->Extent.Colored)
-  {
-    this->Gpu.DispatchIndirect(Stage::DecodeColors, offsetof(ControlBlock, DecodeGroups));
-  }
-  this->Gpu.Dispatch(Stage::PlanPass, 1);
+  this->RunStage(Stage::CacheAges);
+  this->RunStage(Stage::CacheEvict);
+  this->RunStage(Stage::CastRays);
+  this->RunStage(Stage::CastFewRays);
+  this->RunStage(Stage::FinishHits);
+  this->RunStage(Stage::RequestBlocks);
+  this->RunStage(Stage::DecodeBlocks);
+  this->RunStage(Stage::DecodeColors);
+  this->RunStage(Stage::PlanPass);
   ++this->PassesSubmitted;
   this->MarkPassEnd();
   this->Gpu.OrderSnapshot();

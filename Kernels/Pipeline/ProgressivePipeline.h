@@ -130,6 +130,7 @@ private:
   std::int64_t SlotsForRecentImages() const;
 
   std::vector<std::uint32_t> ReadHits(std::int64_t section);
+  void RunStage(Stage stage);
   void RunPass();
   void MarkPassEnd();
   void TakeSnapshot();

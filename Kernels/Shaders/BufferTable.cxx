@@ -2,104 +2,63 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Shaders/BufferTable.h"
 
-namespace
-{
-std::int64_t ControlBytes(const PipelineExtent&)
-{
-  return sizeof(ControlBlock);
-}
-
-std::int64_t StatisticsBytes(const PipelineExtent&)
-{
-  return PassRecords * sizeof(PassRecord);
-}
-
-std::int64_t StreamBytes(const PipelineExtent&)
-{
-  return 0; // see Device::UploadStream
-}
-
-// two floats, two bytes for each of its 64 blocks; with a cache a map page and a bit for each block
-std::int64_t MacrocellBytes(const PipelineExtent& e)
-{
-  return (8 + 2 * 64 + (e.Cached ? 4 + 64 / 8 : 0)) * e.Macrocells;
-}
-
-std::int64_t HiddenBytes(const PipelineExtent& e)
-{
-  return 4 * e.HiddenWords;
-}
-
-// of the hit the key and the depth; see Hits.glsl for the rest
-std::int64_t HitBytes(const PipelineExtent& e)
-{
-  return 4 * (2 + e.SeveralIsovalues + e.Colored + e.Obstructed) * e.Pixels;
-}
-
-// the hits of a translucent image are lit at once
-std::int64_t NormalBytes(const PipelineExtent& e)
-{
-  return e.Lit && !e.Translucent ? 4 * e.Pixels : 0;
-}
-
-std::int64_t LayerBytes(const PipelineExtent& e)
-{
-  return e.Translucent ? 8 * e.Pixels : 0;
-}
-
-std::int64_t RayBytes(const PipelineExtent& e)
-{
-  return e.IsSinglePass() ? 0 : 3 * 4 * e.Pixels;
-}
-
-std::int64_t ValueBytes(const PipelineExtent& e)
-{
-  return BytesPerSlot(e) * e.Slots;
-}
-
-std::int64_t MapBytes(const PipelineExtent& e)
-{
-  return e.Cached ? (16 + 4 * 64) * e.Pages : 0;
-}
-
-// a ring with room for what comes back before the rest has left
-std::int64_t FreeSlotBytes(const PipelineExtent& e)
-{
-  return e.Cached ? 2 * 4 * e.Slots : 0;
-}
-
-std::int64_t RequestBytes(const PipelineExtent& e)
-{
-  return e.Cached ? 4 * e.Slots : 0;
-}
-
-std::int64_t SeenBytes(const PipelineExtent& e)
-{
-  return e.Detailed ? 2 * 4 * e.Slots : 0;
-}
-}
-
 const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers()
 {
-  // clang-format off
+  using E = PipelineExtent;
+  using namespace Conditions;
   static const std::array<BufferInfo, NumberOfBuffers> buffers = { {
-    { Buffer::Control,        "control",          "CONTROL",          Lifetime::Pipeline, ControlBytes,    "all stages",                            "all stages" },
-    { Buffer::PassStatistics, "pass_statistics",  "PASS_STATISTICS",  Lifetime::Pipeline, StatisticsBytes, "PlanPass",                              "the mapper" },
-    { Buffer::Stream,        "compressed",       "STREAM",          Lifetime::Volume,   StreamBytes,    "the mapper",                            "BlockRanges, DecodeBlocks" },
-    { Buffer::ColorStream,   "compressed_colors", "STREAM",         Lifetime::Volume,   StreamBytes,    "the mapper",                            "DecodeColors" },
-    { Buffer::Macrocells,     "macrocells",       "MACROCELLS",       Lifetime::Volume,   MacrocellBytes,  "BlockRanges, FinishHits, RequestBlocks, DecodeBlocks, CacheEvict, CacheReset", "CastRays, CastFewRays, FinishHits, RequestBlocks, DecodeBlocks" },
-    { Buffer::HiddenCells,    "hidden_cells",     "HIDDEN_CELLS",     Lifetime::Volume,   HiddenBytes,     "the mapper",                            "BlockRanges, DecodeBlocks" },
-    { Buffer::Hits,           "hits",             "HITS",             Lifetime::Image,    HitBytes,        "CastRays, CastFewRays, the mapper",     "all stages that cast rays, Composite, Select" },
-    { Buffer::Normals,        "normals",          "NORMALS",          Lifetime::Image,    NormalBytes,     "FinishHits",                           "FinishHits, Composite" },
-    { Buffer::Layers,         "layers",           "LAYERS",           Lifetime::Image,    LayerBytes,      "FinishHits",                           "FinishHits, Composite" },
-    { Buffer::Rays,           "rays",             "RAYS",             Lifetime::Image,    RayBytes,        "CastRays, CastFewRays",                 "RequestBlocks, CastRays, CastFewRays" },
-    { Buffer::CacheValues,    "cache_values",     "CACHE_VALUES",     Lifetime::Cache,    ValueBytes,      "DecodeBlocks",                          "CastRays, CastFewRays, FinishHits, BlockRanges" },
-    { Buffer::CacheMap,       "cache_map",        "CACHE_MAP",        Lifetime::Cache,    MapBytes,        "CastRays, CastFewRays, FinishHits, RequestBlocks, DecodeBlocks, CacheEvict, CacheReset", "CastRays, CastFewRays, FinishHits, RequestBlocks, CacheAges, CacheEvict" },
-    { Buffer::CacheFreeSlots, "cache_free_slots", "CACHE_FREE_SLOTS", Lifetime::Cache,    FreeSlotBytes,   "DecodeBlocks, CacheEvict, CacheReset",  "DecodeBlocks" },
-    { Buffer::CacheRequests,  "cache_requests",   "CACHE_REQUESTS",   Lifetime::Cache,    RequestBytes,    "FinishHits, RequestBlocks",            "DecodeBlocks" },
-    { Buffer::CacheSeen,      "cache_seen",       "CACHE_SEEN",       Lifetime::Cache,    SeenBytes,       "CastRays, CastFewRays",                 "CastRays, CastFewRays" },
+    { Buffer::Control, "control", "CONTROL", Lifetime::Pipeline, Always, "about 1 KB",
+      [](const E&) -> std::int64_t { return sizeof(ControlBlock); }, Access::ReadWrite,
+      "what the pass does and has done: counts, dispatch sizes, the cache's rings" },
+    { Buffer::PassStatistics, "pass_statistics", "PASS_STATISTICS", Lifetime::Pipeline, Always,
+      "3 KB", [](const E&) -> std::int64_t { return PassRecords * sizeof(PassRecord); },
+      Access::Read, "ring of the last passes' records" },
+    { Buffer::Stream, "compressed", "STREAM", Lifetime::Volume, Always, "the ZFP stream",
+      [](const E&) -> std::int64_t { return 0; }, // segments of its own: Device::UploadStream
+      Access::Write,
+      "the compressed volume, in as many segments as it takes; without a cache, "
+      "while it is decoded" },
+    { Buffer::ColorStream, "compressed_colors", "STREAM", Lifetime::Volume, Colored,
+      "the colours' ZFP stream", [](const E&) -> std::int64_t { return 0; }, Access::Write,
+      "likewise, of the volume that gives the colours" },
+    { Buffer::Macrocells, "macrocells", "MACROCELLS", Lifetime::Volume, Always,
+      "2.1 B, with a cache 2.3 B",
+      // range of values, 2 bytes for each of 64 blocks; map page and a bit for each block
+      [](const E& e) { return (8 + 2 * 64 + (e.Cached ? 4 + 64 / 8 : 0)) * e.Macrocells; },
+      Access::None,
+      "ranges of values of macrocells and their blocks; with a cache the map page, "
+      "and which blocks are requested" },
+    { Buffer::HiddenCells, "hidden_cells", "HIDDEN_CELLS", Lifetime::Volume, Hidden,
+      "12 for each run of blocks that are alike", [](const E& e) { return 4 * e.HiddenWords; },
+      Access::Write, "which cells have no surface" },
+    { Buffer::Hits, "hits", "HITS", Lifetime::Image, Always,
+      "8 P, and 4 P each for several isovalues, colours, and obstacles of a translucent image",
+      [](const E& e) { return 4 * (2 + e.SeveralIsovalues + e.Colored + e.Obstructed) * e.Pixels; },
+      Access::ReadWrite, "what each pixel's ray has met, see Hits.glsl" },
+    { Buffer::Normals, "normals", "NORMALS", Lifetime::Image, StoredNormals, "4 P",
+      [](const E& e) { return 4 * e.Pixels; }, Access::Write, "the hits' normals" },
+    { Buffer::Layers, "layers", "LAYERS", Lifetime::Image, Translucent, "8 P",
+      [](const E& e) { return 8 * e.Pixels; }, Access::Write,
+      "the sum of the hits that are blended so far" },
+    { Buffer::Rays, "rays", "RAYS", Lifetime::Image, SeveralPasses, "12 P",
+      [](const E& e) { return 3 * 4 * e.Pixels; }, Access::None,
+      "the queues of rays and of pending hits, see RayQueues.glsl" },
+    { Buffer::CacheValues, "cache_values", "CACHE_VALUES", Lifetime::Cache, Always,
+      "256 S, with colours 512 S, and 16 S for hidden cells; without a cache S = B",
+      [](const E& e) { return BytesPerSlot(e) * e.Slots; }, Access::Read,
+      "decoded samples, and which of their cells are hidden" },
+    { Buffer::CacheMap, "cache_map", "CACHE_MAP", Lifetime::Cache, Cached, "about 34 S",
+      [](const E& e) { return (16 + 4 * 64) * e.Pages; }, Access::None,
+      "map pages: the cache slots of a macrocell's blocks" },
+    { Buffer::CacheFreeSlots, "cache_free_slots", "CACHE_FREE_SLOTS", Lifetime::Cache, Cached,
+      "8 S", [](const E& e) { return 2 * 4 * e.Slots; }, Access::None,
+      "ring of free slots, with room for those that come back before the rest has left" },
+    { Buffer::CacheRequests, "cache_requests", "CACHE_REQUESTS", Lifetime::Cache, Cached, "4 S",
+      [](const E& e) { return 4 * e.Slots; }, Access::None, "blocks that this pass asks for" },
+    { Buffer::CacheSeen, "cache_seen", "CACHE_SEEN", Lifetime::Cache, Detailed, "8 S",
+      [](const E& e) { return 2 * 4 * e.Slots; }, Access::None,
+      "the last passes that intersected and that needed a slot's block" },
   } };
-  // clang-format on
   return buffers;
 }
 

@@ -1,9 +1,12 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
-// Every GPU buffer of the pipeline: what it is for, how large it is, who writes it and who reads
-// it. Buffers.glsl declares the same buffers for the stages.
+// Every GPU buffer of the pipeline: what it is for, how large it is and when it is needed. Which
+// stages read and write it says StageTable.h; Buffers.glsl declares the same buffers for GLSL.
 #ifndef BufferTable_h
 #define BufferTable_h
+
+#include "Shaders/Conditions.h"
+#include "Shaders/PipelineExtent.h"
 
 #include <array>
 #include <cstdint>
@@ -29,36 +32,6 @@ enum class Buffer
 };
 constexpr int NumberOfBuffers = static_cast<int>(Buffer::NumberOfBuffers);
 
-/// What the buffers' sizes follow from, and what of it the scene at hand needs.
-struct PipelineExtent
-{
-  std::int64_t Macrocells = 0;
-  std::int64_t Pixels = 0;
-  std::int64_t Slots = 0;       ///< blocks that the cache holds, or all blocks of the volume
-  std::int64_t Pages = 0;       ///< of the block map
-  std::int64_t HiddenWords = 0; ///< that tell which cells are hidden; 0: none is
-
-  bool Cached = true;    ///< false: the whole volume is decoded, once
-  bool Lit = false;      ///< hits need normals
-  bool Detailed = false; ///< distinct blocks are counted
-  bool SeveralIsovalues = false;
-  bool Translucent = false; ///< rays go on behind a hit
-  bool Obstructed = false;  ///< by opaque geometry, where translucent rays end
-  bool Clipped = false;     ///< by planes
-  bool Cropped = false;     ///< to regions
-  bool Colored = false;     ///< another volume gives the colours
-
-  /// The features above, a bit each.
-  std::uint32_t GetFeatures() const
-  {
-    return this->Cached | this->Lit << 1 | this->Detailed << 2 | this->SeveralIsovalues << 3 |
-      this->Translucent << 4 | this->Obstructed << 5 | this->Clipped << 6 | this->Cropped << 7 |
-      this->Colored << 8 | (this->HiddenWords > 0) << 9;
-  }
-  /// Do rays begin and end in one pass?
-  bool IsSinglePass() const { return !this->Cached && !this->Translucent; }
-};
-
 /// When a buffer's size changes, and with it its contents are void.
 enum class Lifetime
 {
@@ -68,15 +41,41 @@ enum class Lifetime
   Cache
 };
 
+/// How a stage, or the host, uses a buffer.
+enum class Access
+{
+  None = 0,
+  Read = 1,
+  Write = 2,
+  ReadWrite = 3
+};
+constexpr bool Reads(Access access)
+{
+  return (static_cast<int>(access) & static_cast<int>(Access::Read)) != 0;
+}
+constexpr bool Writes(Access access)
+{
+  return (static_cast<int>(access) & static_cast<int>(Access::Write)) != 0;
+}
+
 struct BufferInfo
 {
   Buffer Id;
-  const char* Name;  ///< in the statistics
-  const char* Macro; ///< BINDING_<Macro> and HAS_<Macro> in Buffers.glsl
+  const char* Name;  ///< in the statistics and the documentation
+  const char* Macro; ///< BUFFER_<Macro>, WRITES_<Macro> and HAS_<Macro> in GLSL
   Lifetime Life;
-  std::int64_t (*Bytes)(const PipelineExtent&); ///< 0 where the scene does not need it
-  const char* Producers;
-  const char* Consumers;
+  Condition Needed;
+  const char* Size; ///< in words, what SizeInBytes computes: P pixels, B blocks, S cache slots
+  std::int64_t (*SizeInBytes)(const PipelineExtent&);
+  Access Host;
+  const char* Purpose;
+
+  bool IsNeeded(const PipelineExtent& extent) const { return this->Needed.Holds(extent); }
+  /// 0 if the scene does not need the buffer.
+  std::int64_t Bytes(const PipelineExtent& extent) const
+  {
+    return this->IsNeeded(extent) ? this->SizeInBytes(extent) : 0;
+  }
 };
 
 /// The table itself, in the order of the enumeration. The stream's size is the stream's.

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
-// Every stage of the pipeline: a GLSL file of this folder and the buffers it is given.
+// Every stage of the pipeline: its GLSL file, its work group, when it runs, and what it does with
+// which buffer. The GLSL that a stage needs for this is generated, see ShaderAssembler.h.
 #ifndef StageTable_h
 #define StageTable_h
 
 #include "Shaders/BufferTable.h"
 
-#include <map>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -29,28 +30,50 @@ enum class Stage
 };
 constexpr int NumberOfStages = static_cast<int>(Stage::NumberOfStages);
 
+/// When a stage runs.
+enum class Moment
+{
+  Volume, ///< once, when a volume is loaded
+  Cache,  ///< when the cache is made
+  Pass,   ///< in every pass
+  Drawing ///< into the window
+};
+
+struct StageRun
+{
+  Moment When;
+  Condition Needed;
+};
+
+struct BufferUse
+{
+  Buffer Id;
+  Access How;
+};
+
+/// A dispatch in a pass: the number of work groups is in the control block, at an offset, or one.
+constexpr std::ptrdiff_t OneGroup = -1;
+
 struct StageInfo
 {
   Stage Id;
   const char* Name;
-  const char* File; ///< its GLSL file, in the folder of this header
-  std::vector<Buffer>
-    Buffers; ///< in the order of their bindings; at most 8, OpenGL 4.3's guarantee
+  const char* File; ///< its GLSL file, below the folder of this header
+  int GroupSize;    ///< invocations of a work group; 0: the stage draws
+  std::ptrdiff_t GroupsInPass;
+  std::vector<StageRun> Runs;
+  std::vector<BufferUse> Buffers; ///< at most 8 at a time, OpenGL 4.3's guarantee
+
+  bool Draws() const { return this->GroupSize == 0; }
+  bool IsNeeded(Moment moment, const PipelineExtent& extent) const;
+  Access AccessTo(Buffer buffer) const;
 };
 
 /// The table itself, in the order of the enumeration.
 const std::vector<StageInfo>& PipelineStages();
+const StageInfo& InfoOf(Stage stage);
 
-/// Text of every GLSL file, by name (generated).
-const std::map<std::string, const char*>& ShaderSources();
-
-/// What an OpenGL context older than 4.3 must offer instead, by name.
-const std::vector<std::string>& RequiredExtensions();
-
-/// Complete source of a GLSL file: version (4.30, or 1.50 with the required extensions), the
-/// bindings of those buffers of its stage that are `bound`, which buffers the scene has at all, and
-/// the file with its includes.
-std::string AssembleShader(const std::string& file, const std::vector<Buffer>& bound,
-  const PipelineExtent& extent, bool byExtensions);
+/// Work groups that it takes to give each item an invocation.
+std::int64_t GroupsFor(Stage stage, std::int64_t items);
 
 #endif

@@ -86,7 +86,7 @@ uvec3 NextOffsets(ivec3 planes, uvec3 offsets)
   return offsets + WITHIN + uvec3(equal(planes & 3, ivec3(3))) * (BlockOffsets() - 4u * WITHIN);
 }
 
-#ifdef BINDING_CACHE_SEEN
+#ifdef BUFFER_CACHE_SEEN
 void CountBlocks(ivec3 first, ivec3 reach)
 {
   if (atomicExchange(cacheSeen[2u * SlotOf(first)], control.PassSerial) != control.PassSerial)
@@ -105,7 +105,7 @@ void CountBlocks(ivec3 first, ivec3 reach)
 }
 #endif
 
-#ifdef HAS_CACHE_MAP
+#ifdef WRITES_CACHE_MAP
 // The least recently used pages are the first to be evicted.
 void UsePage(ivec3 coarse)
 {
@@ -118,10 +118,11 @@ void UsePage(ivec3 coarse)
 }
 #endif
 
+#if defined(WRITES_CACHE_MAP) || !defined(HAS_CACHE_MAP)
 // The blocks found last are about to be used.
 void UseBlocks(ivec3 first, ivec3 reach)
 {
-#ifdef BINDING_CACHE_SEEN
+#ifdef BUFFER_CACHE_SEEN
   CountBlocks(first, reach);
 #endif
 #ifdef HAS_CACHE_MAP
@@ -136,3 +137,4 @@ void UseBlocks(ivec3 first, ivec3 reach)
   }
 #endif
 }
+#endif

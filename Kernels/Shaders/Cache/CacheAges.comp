@@ -4,8 +4,6 @@
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
 
-layout(local_size_x = 256) in;
-
 shared uint groupAges[256];
 
 void main()
@@ -13,7 +11,7 @@ void main()
   uint lane = gl_LocalInvocationIndex;
   groupAges[lane] = 0u;
   barrier();
-  for (uint page = 256u * gl_WorkGroupID.x + lane; page < cache.MapPages; page += 256u * gl_NumWorkGroups.x)
+  for (uint page = GROUP_SIZE * gl_WorkGroupID.x + lane; page < cache.MapPages; page += GROUP_SIZE * gl_NumWorkGroups.x)
   {
     if (mapPages[page].Cell != NONE)
     {

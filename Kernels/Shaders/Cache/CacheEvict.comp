@@ -5,8 +5,6 @@
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
 
-layout(local_size_x = 64) in;
-
 shared uint oldestKept;   // pages older than this go,
 shared uint goneAtOldest; // and that many units of this very age
 
@@ -59,8 +57,8 @@ void main()
     FindThreshold();
   }
   barrier();
-  uint first = 64u * gl_WorkGroupID.x + gl_LocalInvocationIndex;
-  for (uint page = first; page < cache.MapPages; page += 64u * gl_NumWorkGroups.x)
+  uint first = GROUP_SIZE * gl_WorkGroupID.x + gl_LocalInvocationIndex;
+  for (uint page = first; page < cache.MapPages; page += GROUP_SIZE * gl_NumWorkGroups.x)
   {
     if (Goes(page))
     {

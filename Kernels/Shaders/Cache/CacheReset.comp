@@ -4,12 +4,10 @@
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
 
-layout(local_size_x = 256) in;
-
 void main()
 {
-  uint first = 256u * FoldedGroup() + gl_LocalInvocationIndex;
-  uint stride = 256u * gl_NumWorkGroups.x * gl_NumWorkGroups.y;
+  uint first = GROUP_SIZE * FoldedGroup() + gl_LocalInvocationIndex;
+  uint stride = GROUP_SIZE * gl_NumWorkGroups.x * gl_NumWorkGroups.y;
   for (uint i = first; i < volume.NumberOfMacrocells; i += stride)
   {
     macrocells[i].Page = NONE;

@@ -4,7 +4,6 @@
 // what the walks have met, a block or neighbour each.
 // In: Rays, Macrocells, CacheMap. Out: CacheRequests, CacheMap, Macrocells, Control.
 
-#define GROUP 64u  // see ReserveRays
 #define AHEAD 256u // blocks that a work group's rays may meet
 
 #include "Shared/Scene.glsl"
@@ -16,8 +15,6 @@
 #include "Rays/BlockReach.glsl"
 #include "Cache/Requests.glsl"
 #include "Rays/RayQueues.glsl"
-
-layout(local_size_x = 64) in; // GROUP
 
 shared uvec2 ahead[AHEAD]; // block, and its reach in the lowest three bits
 shared uint aheadCount;
@@ -41,7 +38,7 @@ void LookAhead(uint pixel, uint speculation)
 // Every lane takes a neighbour, or the block itself.
 void RequestMissing()
 {
-  for (uint i = gl_LocalInvocationIndex; i < 8u * aheadCount; i += GROUP)
+  for (uint i = gl_LocalInvocationIndex; i < 8u * aheadCount; i += GROUP_SIZE)
   {
     uvec2 met = ahead[i >> 3];
     if ((i & 7u & ~met.y) == 0u)
@@ -59,7 +56,7 @@ void main()
 {
   // no looking ahead where there is no room for what is needed now
   uint speculation = control.Frontier < PixelsInTiles() ? 1u : Speculation(control.NextCarried);
-  uint raysPerGroup = min(GROUP, AHEAD / speculation);
+  uint raysPerGroup = min(GROUP_SIZE, AHEAD / speculation);
   uint index = raysPerGroup * gl_WorkGroupID.x + gl_LocalInvocationIndex;
   if (gl_LocalInvocationIndex == 0u)
   {

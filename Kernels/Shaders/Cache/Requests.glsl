@@ -22,11 +22,11 @@ uint TakePage(uint cell)
   return page;
 }
 
-// Takes places on the list of requests, which DecodeBlocks.comp works through in groups of 32.
+// Takes places on the list of requests, and makes DecodeBlocks.comp have an invocation for each.
 uint ReserveRequests(uint count)
 {
   uint at = atomicAdd(control.Requests, count);
-  atomicMax(control.DecodeGroups.X, min((at + count + 31u) / 32u, MAX_GROUPS));
+  atomicMax(control.DecodeGroups.X, min((at + count + DECODE_BLOCKS_GROUP_SIZE - 1u) / DECODE_BLOCKS_GROUP_SIZE, MAX_GROUPS));
   return at;
 }
 
@@ -87,7 +87,7 @@ void CloseRequests()
     listedBegin = ReserveRequests(count);
   }
   barrier();
-  for (uint i = gl_LocalInvocationIndex; i < count; i += GROUP)
+  for (uint i = gl_LocalInvocationIndex; i < count; i += GROUP_SIZE)
   {
     ListRequest(listedBegin + i, listed[i]);
   }

@@ -8,6 +8,7 @@ vec4 BlendedLayers(uint pixel)
   return vec4(unpackUnorm2x16(bits.x), unpackUnorm2x16(bits.y));
 }
 
+#ifdef WRITES_LAYERS
 // Adds what lies behind all that is there; false where nothing more would show.
 bool AddLayer(uint pixel, vec3 color, float opacity)
 {
@@ -16,3 +17,4 @@ bool AddLayer(uint pixel, vec3 color, float opacity)
   layers[pixel] = uvec2(packUnorm2x16(sum.xy), packUnorm2x16(sum.zw));
   return sum.w < OPAQUE_ENOUGH;
 }
+#endif

@@ -2,8 +2,6 @@
 // slots of the rays that are done serve those that are left (section 4).
 // In: Macrocells, CacheMap, CacheValues, Rays. Out: Hits, Rays, CacheMap (stamps), Control.
 
-#define GROUP 32u
-
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
 #include "Rays/Rays.glsl"
@@ -15,9 +13,7 @@
 #include "Surface/IntersectBlock.glsl"
 #include "Rays/RayQueues.glsl"
 
-layout(local_size_x = 32) in; // GROUP
-
-shared uint firstMissing; // lane whose block is not in the cache, the first along the ray; GROUP: none
+shared uint firstMissing; // lane whose block is not in the cache, the first along the ray; GROUP_SIZE: none
 shared uint firstHit;     // likewise, whose block is hit
 
 // Lane i takes the i-th active block from `block` on, if there is one; false for the lanes behind the last. The whole
@@ -26,7 +22,7 @@ bool TakeBlock(Ray ray, inout ivec3 block, inout GridCursor at, inout bool insid
 {
   bool took = false;
   taken = block;
-  for (uint i = 0u; i < GROUP && inside; ++i)
+  for (uint i = 0u; i < GROUP_SIZE && inside; ++i)
   {
     inside = FindActiveBlock(ray, block, at);
     if (inside && i == gl_LocalInvocationIndex)
@@ -83,13 +79,13 @@ bool CastRay(uint pixel)
       rays[NextList(FromEnd(ReserveUnlit(1u)))] = pixel;
 #endif
     }
-    else if (firstHit == GROUP && firstMissing == lane)
+    else if (firstHit == GROUP_SIZE && firstMissing == lane)
     {
       rays[pixel] = BlockIndex(block);
     }
-    if (firstHit < GROUP || firstMissing < GROUP)
+    if (firstHit < GROUP_SIZE || firstMissing < GROUP_SIZE)
     {
-      return firstHit == GROUP;
+      return firstHit == GROUP_SIZE;
     }
   }
   return false;
@@ -100,8 +96,8 @@ void main()
   OpenGroup();
   if (gl_LocalInvocationIndex == 0u)
   {
-    firstMissing = GROUP;
-    firstHit = GROUP;
+    firstMissing = GROUP_SIZE;
+    firstHit = GROUP_SIZE;
   }
   barrier();
   uint index = FoldedGroup();

@@ -4,8 +4,6 @@
 // finds is the nearest.
 // In: Macrocells, CacheMap, CacheValues, Rays. Out: Hits, Rays, CacheMap (stamps), Control.
 
-#define GROUP 32u
-
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
 #include "Rays/Rays.glsl"
@@ -16,8 +14,6 @@
 #include "Rays/BlockReach.glsl"
 #include "Surface/IntersectBlock.glsl"
 #include "Rays/RayQueues.glsl"
-
-layout(local_size_x = 32) in; // GROUP
 
 // Walks from `block` to the first hit; true where the ray has to wait for the block that it returns.
 bool FindHit(Ray ray, inout ivec3 block, out Hit hit)
@@ -143,7 +139,7 @@ void main()
 {
   OpenGroup();
   barrier();
-  uint index = GROUP * FoldedGroup() + gl_LocalInvocationIndex;
+  uint index = GROUP_SIZE * FoldedGroup() + gl_LocalInvocationIndex;
   uint pixel = NONE;
   uint state = DONE;
   if (index < control.Rays)

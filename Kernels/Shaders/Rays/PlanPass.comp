@@ -8,10 +8,6 @@
 
 #define PASS_RECORDS 64u
 #define LEAST_WINDOW 64u // pixels; the smallest cache has room for all that their rays can need at once
-#define CAST_GROUP 32u   // rays that a work group of CastRays takes
-#define NORMALS_GROUP 64u
-
-layout(local_size_x = 1) in;
 
 uint Pixels()
 {
@@ -113,7 +109,7 @@ void PlanEviction()
   // more than is wanted now, so that not every pass evicts
   control.EvictWanted =
     fewPages ? min(2u * enoughPages, pages) - control.FreePages : min(2u * enoughSlots, slots) - control.FreeSlots;
-  control.EvictGroups.X = fewSlots || fewPages ? clamp((pages + 63u) / 64u, 1u, 4096u) : 0u;
+  control.EvictGroups.X = fewSlots || fewPages ? clamp((pages + CACHE_EVICT_GROUP_SIZE - 1u) / CACHE_EVICT_GROUP_SIZE, 1u, 4096u) : 0u;
   control.Evicted = 0u;
   for (uint i = 0u; (fewSlots || fewPages) && i < 256u; ++i)
   {
@@ -147,15 +143,15 @@ void PlanDispatches()
 {
   bool carried = control.Rays == control.Carried + control.Again;
   bool few = carried && cache.PixelsPerStraggler > 0u && control.Rays <= Pixels() / cache.PixelsPerStraggler;
-  uvec2 groups = few ? Folded(control.Rays) : Folded((control.Rays + CAST_GROUP - 1u) / CAST_GROUP);
+  uvec2 groups = few ? Folded(control.Rays) : Folded((control.Rays + CAST_RAYS_GROUP_SIZE - 1u) / CAST_RAYS_GROUP_SIZE);
   control.CastGroups.X = few ? 0u : groups.x;
   control.CastGroups.Y = groups.y;
   control.FewGroups.X = few ? groups.x : 0u;
   control.FewGroups.Y = groups.y;
 #ifdef HAS_RAYS
-  control.NormalGroups.X = min((control.Unlit + NORMALS_GROUP - 1u) / NORMALS_GROUP, MAX_GROUPS); // hits add to it
+  control.NormalGroups.X = min((control.Unlit + FINISH_HITS_GROUP_SIZE - 1u) / FINISH_HITS_GROUP_SIZE, MAX_GROUPS); // hits add to it
 #else
-  groups = Folded((PixelsInTiles() + NORMALS_GROUP - 1u) / NORMALS_GROUP);
+  groups = Folded((PixelsInTiles() + FINISH_HITS_GROUP_SIZE - 1u) / FINISH_HITS_GROUP_SIZE);
   control.NormalGroups.X = control.Rays == 0u ? 0u : groups.x;
   control.NormalGroups.Y = groups.y;
 #endif

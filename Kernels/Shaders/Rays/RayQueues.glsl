@@ -26,7 +26,7 @@ void CountWork()
 #ifdef HAS_CACHE_MAP
   atomicAdd(groupTouched, touchedSlots);
 #endif
-#ifdef BINDING_CACHE_SEEN
+#ifdef BUFFER_CACHE_SEEN
   atomicAdd(groupVisible, visibleBlocks);
   atomicAdd(groupNeeded, activeBlocks);
 #endif
@@ -38,7 +38,7 @@ void CountWork()
 #ifdef HAS_CACHE_MAP
     atomicAdd(control.TouchedSlots, groupTouched);
 #endif
-#ifdef BINDING_CACHE_SEEN
+#ifdef BUFFER_CACHE_SEEN
     atomicAdd(control.VisibleBlocks, groupVisible);
     atomicAdd(control.ActiveBlocks, groupNeeded);
 #endif
@@ -77,7 +77,7 @@ uint ReserveRays(uint count, uint first)
   uint at = atomicAdd(control.NextCarried, count);
   // enough groups of RequestBlocks for whatever number of rays it will be, and what they look ahead
   uint rays = at + count;
-  uint groups = max((rays + 63u) / 64u, min((rays + 3u) / 4u, ImagePixels() / 1024u + 1u));
+  uint groups = max((rays + REQUEST_BLOCKS_GROUP_SIZE - 1u) / REQUEST_BLOCKS_GROUP_SIZE, min((rays + 3u) / 4u, ImagePixels() / 1024u + 1u));
   atomicMax(control.RequestGroups.X, min(groups, MAX_GROUPS));
   return at;
 }
@@ -87,7 +87,7 @@ uint ReserveRays(uint count, uint first)
 uint ReserveUnlit(uint count)
 {
   uint at = atomicAdd(control.Unlit, count);
-  atomicMax(control.NormalGroups.X, min((at + count + 63u) / 64u, MAX_GROUPS));
+  atomicMax(control.NormalGroups.X, min((at + count + FINISH_HITS_GROUP_SIZE - 1u) / FINISH_HITS_GROUP_SIZE, MAX_GROUPS));
   return at;
 }
 

@@ -60,7 +60,7 @@ void ClipRay(inout Ray ray)
 }
 #endif
 
-#if defined(OBSTRUCTED) && defined(BINDING_HITS)
+#if defined(OBSTRUCTED) && defined(BUFFER_HITS)
 // Parameter at which a ray meets opaque geometry of this depth in the window.
 double ObstacleT(float depth)
 {
@@ -89,7 +89,7 @@ Ray CameraRay(uint pixel)
 #ifdef CLIPPED
   ClipRay(ray);
 #endif
-#if defined(OBSTRUCTED) && defined(BINDING_HITS)
+#if defined(OBSTRUCTED) && defined(BUFFER_HITS)
   ray.Leave = min(ray.Leave, ObstacleT(ObstacleOf(pixel)));
 #endif
   return ray;

@@ -1,14 +1,14 @@
-// Every storage buffer of the pipeline, as the GPU sees it. Who writes and who reads each of them, and its
-// size, stands in BufferTable.cxx. A stage gets BINDING_* only for the buffers it is given, and every
-// stage gets HAS_* for the buffers that the scene needs: what belongs to another is not compiled.
+// Every storage buffer of the pipeline, as the GPU sees it. docs/reference/buffers.md has their sizes, and who reads
+// and writes them. The assembler defines BUFFER_X as the declaration of a buffer up to its block's name, in stages that
+// use it only, and HAS_X in all stages if the scene needs buffer X.
 
-#ifdef BINDING_CONTROL
+#ifdef BUFFER_CONTROL
 // A dispatch whose size the GPU decides: three group counts and a pad.
 struct Dispatch
 {
   uint X, Y, Z, Pad;
 };
-layout(std430, binding = BINDING_CONTROL) buffer Control
+BUFFER_CONTROL Control
 {
   // the rays of this pass: those carried over in a list, then fresh ones in tile order
   uint Rays;
@@ -58,21 +58,21 @@ layout(std430, binding = BINDING_CONTROL) buffer Control
 control;
 #endif
 
-#ifdef BINDING_PASS_STATISTICS
+#ifdef BUFFER_PASS_STATISTICS
 struct PassRecord
 {
   uint ActiveRays, Speculation, Pairs, VisibleBlocks;
   uint ActiveBlocks, DecodedBlocks, CachedBlocks, RemainingRays;
   uint RefusedBlocks, TouchedSlots, Pad0, Pad1;
 };
-layout(std430, binding = BINDING_PASS_STATISTICS) buffer PassStatistics { PassRecord passRecords[]; };
+BUFFER_PASS_STATISTICS PassStatistics { PassRecord passRecords[]; };
 #endif
 
 // ---- the volume
-#ifdef BINDING_STREAM
-layout(std430, binding = BINDING_STREAM) readonly buffer StreamBuffer { uint stream[]; };
+#ifdef BUFFER_STREAM
+BUFFER_STREAM StreamBuffer { uint stream[]; };
 #endif
-#ifdef BINDING_MACROCELLS
+#ifdef BUFFER_MACROCELLS
 struct Macrocell
 {
   float Low, High; // range of the dual grids of its blocks
@@ -82,44 +82,44 @@ struct Macrocell
 #endif
   uint Ranges[32]; // of its 64 blocks' dual grids, two a word: steps within its own range, 8 + 8 bits each
 };
-layout(std430, binding = BINDING_MACROCELLS) buffer Macrocells { Macrocell macrocells[]; };
+BUFFER_MACROCELLS Macrocells { Macrocell macrocells[]; };
 #endif
-#ifdef BINDING_HIDDEN_CELLS
+#ifdef BUFFER_HIDDEN_CELLS
 // Which cells are hidden, as runs of blocks that are alike: how many runs there are, the first block of each, and then two
 // words of bits for each. See HiddenCells.glsl.
-layout(std430, binding = BINDING_HIDDEN_CELLS) readonly buffer HiddenCells { uint hiddenRuns; uint hiddenCells[]; };
+BUFFER_HIDDEN_CELLS HiddenCells { uint hiddenRuns; uint hiddenCells[]; };
 #endif
 
 // ---- the image
-#ifdef BINDING_HITS
+#ifdef BUFFER_HITS
 // What a pixel's ray has met, see Hits.glsl.
-layout(std430, binding = BINDING_HITS) buffer Hits { uint hits[]; };
+BUFFER_HITS Hits { uint hits[]; };
 #endif
-#ifdef BINDING_LAYERS
+#ifdef BUFFER_LAYERS
 // What the layers of a translucent image add up to, front to back: colour times opacity, opacity; 4 x 16 bits.
-layout(std430, binding = BINDING_LAYERS) buffer Layers { uvec2 layers[]; };
+BUFFER_LAYERS Layers { uvec2 layers[]; };
 #endif
-#ifdef BINDING_NORMALS
-layout(std430, binding = BINDING_NORMALS) buffer Normals { uint normals[]; };
+#ifdef BUFFER_NORMALS
+BUFFER_NORMALS Normals { uint normals[]; };
 #endif
-#ifdef BINDING_RAYS
+#ifdef BUFFER_RAYS
 // For every pixel the block that its live ray waits for or goes on in; then two lists, in turn, of the pixels of live rays, and from
 // their ends on of hits without a normal.
-layout(std430, binding = BINDING_RAYS) buffer Rays { uint rays[]; };
+BUFFER_RAYS Rays { uint rays[]; };
 #endif
 
 // ---- the block cache
-#ifdef BINDING_CACHE_VALUES
+#ifdef BUFFER_CACHE_VALUES
 // 64 samples a slot, x fastest; behind all slots likewise those of the volume that gives the colours, and then, where cells
 // are hidden, 4 words a slot: the bits of its block's cells, and two of no use. A stage that defines CACHE_BY_ROWS has all in
 // rows of four.
 #ifdef CACHE_BY_ROWS
-layout(std430, binding = BINDING_CACHE_VALUES) buffer CacheValues { uvec4 cacheRows[]; };
+BUFFER_CACHE_VALUES CacheValues { uvec4 cacheRows[]; };
 #else
-layout(std430, binding = BINDING_CACHE_VALUES) buffer CacheValues { uint cacheValues[]; };
+BUFFER_CACHE_VALUES CacheValues { uint cacheValues[]; };
 #endif
 #endif
-#ifdef BINDING_CACHE_MAP
+#ifdef BUFFER_CACHE_MAP
 struct MapPage
 {
   uint Cell;  // the macrocell it belongs to; NONE: free
@@ -128,15 +128,15 @@ struct MapPage
   uint Free;  // not of this page: an element of the ring of free pages
   uint Slots[64];
 };
-layout(std430, binding = BINDING_CACHE_MAP) buffer CacheMap { MapPage mapPages[]; };
+BUFFER_CACHE_MAP CacheMap { MapPage mapPages[]; };
 #endif
-#ifdef BINDING_CACHE_FREE_SLOTS
-layout(std430, binding = BINDING_CACHE_FREE_SLOTS) buffer CacheFreeSlots { uint cacheFreeSlots[]; };
+#ifdef BUFFER_CACHE_FREE_SLOTS
+BUFFER_CACHE_FREE_SLOTS CacheFreeSlots { uint cacheFreeSlots[]; };
 #endif
-#ifdef BINDING_CACHE_REQUESTS
-layout(std430, binding = BINDING_CACHE_REQUESTS) buffer CacheRequests { uint cacheRequests[]; };
+#ifdef BUFFER_CACHE_REQUESTS
+BUFFER_CACHE_REQUESTS CacheRequests { uint cacheRequests[]; };
 #endif
-#ifdef BINDING_CACHE_SEEN
+#ifdef BUFFER_CACHE_SEEN
 // The last passes in which a slot's block was intersected, and in which it was needed at all.
-layout(std430, binding = BINDING_CACHE_SEEN) buffer CacheSeen { uint cacheSeen[]; };
+BUFFER_CACHE_SEEN CacheSeen { uint cacheSeen[]; };
 #endif

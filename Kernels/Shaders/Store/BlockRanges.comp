@@ -10,7 +10,7 @@
 #include "Shared/Buffers.glsl"
 #include "Rays/Rays.glsl"
 #include "Shared/Grid.glsl"
-#ifdef BINDING_STREAM
+#ifdef BUFFER_STREAM
 #include "Store/BlockStore.glsl"
 #include "Store/ZFPDecode.glsl"
 #endif
@@ -18,10 +18,7 @@
 #include "Store/HiddenCells.glsl"
 #endif
 
-layout(local_size_x = 32) in; // LANES
-
 #define GRID 17 // samples of a macrocell's dual grids on an axis
-#define LANES 32u
 
 shared float samples[GRID * GRID * GRID];
 shared vec2 localRanges[64];
@@ -46,7 +43,7 @@ void KeepRow(ivec3 local, int row, uvec4 bits)
 
 void LoadBlock(ivec3 local, uint block)
 {
-#ifdef BINDING_STREAM
+#ifdef BUFFER_STREAM
   DecodedBlock decoded = DecodeBlock(block, gl_LocalInvocationIndex);
 #define KEEP_ROW(r) KeepRow(local, r, decoded.Row[r]);
   FOR_ROWS(KEEP_ROW)
@@ -61,7 +58,7 @@ void LoadBlock(ivec3 local, uint block)
 // Loads the samples of 5^3 blocks from the macrocell's first one on, a block a lane.
 void LoadSamples(ivec3 firstBlock)
 {
-  for (uint i = gl_LocalInvocationIndex; i < 125u; i += LANES)
+  for (uint i = gl_LocalInvocationIndex; i < 125u; i += GROUP_SIZE)
   {
     ivec3 local = ivec3(i % 5u, (i / 5u) % 5u, i / 25u);
     ivec3 block = firstBlock + local;
@@ -174,7 +171,7 @@ void StoreRanges(uint cell)
 
 uvec2 MacrocellsOfDispatch()
 {
-#ifdef BINDING_STREAM
+#ifdef BUFFER_STREAM
   return uvec2(segment[4], segment[4] + segment[5]);
 #else
   return uvec2(0u, volume.NumberOfMacrocells);
@@ -191,7 +188,7 @@ void main()
       (cell / uint(volume.Macrocells.x)) % uint(volume.Macrocells.y),
       cell / (uint(volume.Macrocells.x) * uint(volume.Macrocells.y)));
     LoadSamples(4 * coarse);
-    for (uint i = lane; i < 64u; i += LANES)
+    for (uint i = lane; i < 64u; i += GROUP_SIZE)
     {
       localRanges[i] = DualGridRange(4 * coarse, ivec3(i & 3u, (i >> 2) & 3u, i >> 4));
     }

@@ -10,8 +10,6 @@
 #include "Store/BlockStore.glsl"
 #include "Store/ZFPDecode.glsl"
 
-layout(local_size_x = 32) in;
-
 #ifdef HAS_CACHE_MAP
 // The block's bit is cleared for the next pass; it gets the slot whose turn it is, and its place on the map.
 uint SlotFor(uint i, uint block)

@@ -12,8 +12,6 @@
 #include "Store/BlockStore.glsl"
 #include "Store/ZFPDecode.glsl"
 
-layout(local_size_x = 32) in;
-
 // None where the request was refused.
 uint SlotFor(uint i, uint block)
 {

@@ -20,7 +20,7 @@ uint BlockAt(uint i)
 #endif
 }
 
-#ifdef BINDING_HIDDEN_CELLS
+#ifdef BUFFER_HIDDEN_CELLS
 #include "Store/HiddenCells.glsl"
 #endif
 
@@ -34,8 +34,8 @@ void main()
 {
   uint lane = gl_LocalInvocationIndex;
   uint number = NumberOfBlocks();
-  uint stride = gl_NumWorkGroups.x * gl_NumWorkGroups.y * ZFP_LANES;
-  for (uint i = FoldedGroup() * ZFP_LANES + lane; i < number; i += stride)
+  uint stride = gl_NumWorkGroups.x * gl_NumWorkGroups.y * GROUP_SIZE;
+  for (uint i = FoldedGroup() * GROUP_SIZE + lane; i < number; i += stride)
   {
     uint block = BlockAt(i);
     if (InSegment(block))
@@ -44,7 +44,7 @@ void main()
       if (slot != NONE)
       {
         StoreBlock(FirstSlot() + slot, DecodeBlock(block, lane));
-#ifdef BINDING_HIDDEN_CELLS
+#ifdef BUFFER_HIDDEN_CELLS
         cacheRows[HiddenRow(slot)] = uvec4(FindHiddenCells(block), 0u, 0u);
 #endif
       }

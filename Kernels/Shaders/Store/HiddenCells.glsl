@@ -1,7 +1,7 @@
 // Cells in which there is no surface, as a volume's mask says (see vtkBlockMask): of every block 64 bits, bit x + 4y + 16z
 // for the cell with that lowest corner. They come with a block into its cache slot; only what has no slot searches the runs.
 
-#ifdef BINDING_HIDDEN_CELLS
+#ifdef BUFFER_HIDDEN_CELLS
 // A block's bits: those of the last run that begins at or before it.
 uvec2 FindHiddenCells(uint block)
 {
@@ -33,7 +33,7 @@ uint HiddenRow(uint slot)
 #endif
 }
 
-#if defined(BINDING_CACHE_VALUES) && !defined(CACHE_BY_ROWS)
+#if defined(BUFFER_CACHE_VALUES) && !defined(CACHE_BY_ROWS)
 // The bits that came with a block into its slot.
 uvec2 HiddenInSlot(uint slot)
 {

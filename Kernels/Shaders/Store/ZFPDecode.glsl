@@ -2,17 +2,16 @@
 // decode3.c, codecf.c). One lane decodes one block. Bit planes come one after the other, hence lie in shared memory, a
 // column a lane; all else stays in registers, for which nothing is indexed by a variable.
 
-#define ZFP_LANES 32u
 #define ZFP_EXPONENT_BITS 8u
 #define ZFP_EXPONENT_BIAS 127
 #define ZFP_NEGABINARY 0xAAAAAAAAu
 
-shared uint zfpPlanes[64u * ZFP_LANES];
+shared uint zfpPlanes[64u * GROUP_SIZE];
 
 // Plane k of the first 32 coefficients; that of the other 32 is 32 rows below.
 uint PlaneIndex(uint k, uint lane)
 {
-  return k * ZFP_LANES + lane;
+  return k * GROUP_SIZE + lane;
 }
 
 // What follows the verbatim bits of a plane: a zero, and the plane ends; or a one, a run of zeros and the one that ends

@@ -4,8 +4,6 @@
 // ray may have asked for a block yet: such a hit asks, and waits.
 // In: Hits, Rays, CacheMap, CacheValues. Out: Hits, Normals or Layers, Rays, CacheRequests, CacheMap, Macrocells, Control.
 
-#define GROUP 64u
-
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
 #include "Rays/Rays.glsl"
@@ -22,8 +20,6 @@
 #else
 #include "Surface/PackedNormal.glsl"
 #endif
-
-layout(local_size_x = 64) in; // GROUP
 
 #if defined(LIT) || defined(COLORED)
 // True where the normal, or the colour, has to wait for blocks.
@@ -140,7 +136,7 @@ void main()
   OpenRequests();
 #endif
   barrier();
-  for (uint first = GROUP * gl_WorkGroupID.x; first < control.Unlit; first += GROUP * gl_NumWorkGroups.x)
+  for (uint first = GROUP_SIZE * gl_WorkGroupID.x; first < control.Unlit; first += GROUP_SIZE * gl_NumWorkGroups.x)
   {
     uint index = first + gl_LocalInvocationIndex;
     uint pixel = NONE;
@@ -162,7 +158,7 @@ void main()
 #else
 void main()
 {
-  uint order = GROUP * FoldedGroup() + gl_LocalInvocationIndex;
+  uint order = GROUP_SIZE * FoldedGroup() + gl_LocalInvocationIndex;
   uint pixel = order < PixelsInTiles() ? PixelInTileOrder(order) : NONE;
   if (pixel != NONE && hits[pixel] != NO_HIT)
   {

@@ -16,7 +16,7 @@ uint ImagePixels()
   return uint(view.ImageSize.x * view.ImageSize.y);
 }
 
-#ifdef BINDING_HITS
+#ifdef BUFFER_HITS
 Hit HitOf(uint pixel)
 {
 #ifdef SEVERAL_ISOVALUES
@@ -52,7 +52,11 @@ float ColorValueOf(uint pixel)
 {
   return uintBitsToFloat(hits[COLOR_SECTION * ImagePixels() + pixel]);
 }
+#endif
+#endif
 
+#ifdef WRITES_HITS
+#ifdef COLORED
 void KeepColorValue(uint pixel, float value)
 {
   hits[COLOR_SECTION * ImagePixels() + pixel] = floatBitsToUint(value);

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef PipelineExtent_h
+#define PipelineExtent_h
+
+#include <cstdint>
+
+/// What the buffers' sizes follow from, and what of it the scene at hand needs.
+struct PipelineExtent
+{
+  std::int64_t Macrocells = 0;
+  std::int64_t Pixels = 0;
+  std::int64_t Blocks = 0;      ///< of the volume
+  std::int64_t Slots = 0;       ///< blocks that the cache holds, or all blocks of the volume
+  std::int64_t Pages = 0;       ///< of the block map
+  std::int64_t HiddenWords = 0; ///< that tell which cells are hidden; 0: none is
+
+  bool Cached = true;    ///< false: the whole volume is decoded, once
+  bool Lit = false;      ///< hits need normals
+  bool Detailed = false; ///< distinct blocks are counted
+  bool SeveralIsovalues = false;
+  bool Translucent = false; ///< rays go on behind a hit
+  bool Obstructed = false;  ///< by opaque geometry, where translucent rays end
+  bool Clipped = false;     ///< by planes
+  bool Cropped = false;     ///< to regions
+  bool Colored = false;     ///< another volume gives the colours
+
+  /// The features above, a bit each.
+  std::uint32_t GetFeatures() const
+  {
+    return this->Cached | this->Lit << 1 | this->Detailed << 2 | this->SeveralIsovalues << 3 |
+      this->Translucent << 4 | this->Obstructed << 5 | this->Clipped << 6 | this->Cropped << 7 |
+      this->Colored << 8 | (this->HiddenWords > 0) << 9;
+  }
+  /// Do rays begin and end in one pass?
+  bool IsSinglePass() const { return !this->Cached && !this->Translucent; }
+};
+
+#endif

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+// Makes complete GLSL sources: what the tables of stages and buffers say, then a file with all
+// that it includes. Compile errors are told by the file and line that a developer knows.
+#ifndef ShaderAssembler_h
+#define ShaderAssembler_h
+
+#include "Shaders/StageTable.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+/// Texts of GLSL files by their paths below this folder.
+using ShaderFiles = std::map<std::string, const char*>;
+
+/// All GLSL files (generated).
+const ShaderFiles& ShaderSources();
+
+/// What an OpenGL context older than 4.3 must offer instead, by name.
+const std::vector<std::string>& RequiredExtensions();
+
+/// Lines of a text that come one after the other from a file.
+struct ShaderSection
+{
+  int FirstLine; ///< in the text
+  std::string File;
+  int FirstLineInFile;
+};
+
+struct AssembledShader
+{
+  std::string Text;
+  std::vector<ShaderSection> Sections;
+};
+
+/// The vertex shader of all stages that draw.
+constexpr const char* ViewportShader = "Output/Viewport.vert";
+
+/// Assembles a file of a stage from
+/// - the version: 4.30, or 1.50 with the required extensions,
+/// - the size of its work group, and GROUP_SIZE; of every other stage <STAGE>_GROUP_SIZE,
+/// - for each of its buffers that are `bound` BUFFER_<X>, the declaration up to its block's name
+///   with its qualifiers, and WRITES_<X> if the stage may,
+/// - HAS_<X> for each buffer that the scene needs, and a macro for each of its other features,
+/// - the file itself. `#include "X"` pastes X once; `#include BLOCK_ACCESS` the file that knows
+///   how this scene's decoded blocks are found.
+AssembledShader AssembleShader(const StageInfo& stage, const std::string& file,
+  const std::vector<Buffer>& bound, const PipelineExtent& extent, bool byExtensions,
+  const ShaderFiles& files = ShaderSources());
+
+/// Replaces the places in a shader's text that begin the lines of a compiler's log by file and
+/// line. Understands "0:14(5): …" (Mesa) and "0(14) : …" (NVIDIA). No #line directives are needed
+/// for this; Mesa forgets the number of the file that they give.
+std::string NameFiles(const std::string& log, const AssembledShader& shader);
+
+#endif

@@ -1,0 +1,225 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+// The tables of stages and buffers say what is: every stage compiles with the access that they
+// grant, and not with less.
+#include "GL/ProgIsoGL.h"
+#include "Shaders/ShaderAssembler.h"
+
+#include <vtkNew.h>
+#include <vtkRenderWindow.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace
+{
+constexpr std::size_t GuaranteedBuffers = 8; // that OpenGL 4.3 lets a stage bind
+
+PipelineExtent SmallExtent(bool cached)
+{
+  PipelineExtent extent;
+  extent.Macrocells = extent.Pixels = extent.Slots = extent.Pages = 1;
+  extent.Blocks = 2;
+  extent.Cached = cached;
+  return extent;
+}
+
+PipelineExtent WithAllFeatures(PipelineExtent extent)
+{
+  extent.HiddenWords = 1;
+  extent.Lit = extent.Detailed = extent.SeveralIsovalues = extent.Obstructed = true;
+  extent.Clipped = extent.Cropped = extent.Colored = true;
+  return extent;
+}
+
+PipelineExtent Translucent(PipelineExtent extent)
+{
+  extent.Translucent = true;
+  return extent;
+}
+
+std::vector<PipelineExtent> Extents()
+{
+  std::vector<PipelineExtent> extents;
+  for (const bool cached : { true, false })
+  {
+    const PipelineExtent plain = SmallExtent(cached);
+    const PipelineExtent all = WithAllFeatures(plain);
+    extents.insert(extents.end(), { all, plain, Translucent(all), Translucent(plain) });
+  }
+  return extents;
+}
+
+bool IsNeeded(const StageInfo& stage, const PipelineExtent& extent)
+{
+  return std::any_of(stage.Runs.begin(), stage.Runs.end(),
+    [&](const StageRun& run) { return run.Needed.Holds(extent); });
+}
+
+// What a stage finds there when it runs: ranges come from the stream before there is a cache, or
+// from the decoded volume when the stream is gone.
+std::vector<Buffer> BoundBuffers(const StageInfo& stage, const PipelineExtent& extent)
+{
+  const Buffer absent = extent.Cached ? Buffer::CacheValues : Buffer::Stream;
+  std::vector<Buffer> bound;
+  for (const BufferUse& use : stage.Buffers)
+  {
+    const bool there = stage.Id != Stage::BlockRanges || use.Id != absent;
+    if (there && PipelineBuffers()[static_cast<std::size_t>(use.Id)].IsNeeded(extent))
+    {
+      bound.push_back(use.Id);
+    }
+  }
+  return bound;
+}
+
+// Not every compiler tells if an atomic function changes what is only to be read: plain reads and
+// writes stand in.
+std::string WithoutAtomics(std::string text)
+{
+  const char* functions[] = { "Add(m, v)", "Or(m, v)", "And(m, v)", "Min(m, v)", "Max(m, v)",
+    "Exchange(m, v)", "CompSwap(m, c, v)" };
+  for (const char* function : functions)
+  {
+    const std::size_t line = text.find('\n', text.find("#version")) + 1;
+    text.insert(line, std::string("#define atomic") + function + " (m = m + (v))\n");
+  }
+  return text;
+}
+
+AssembledShader Assemble(
+  const StageInfo& stage, const PipelineExtent& extent, const ShaderFiles& files = ShaderSources())
+{
+  return AssembleShader(stage, stage.File, BoundBuffers(stage, extent), extent, false, files);
+}
+
+// The compiler's log; empty if the shader compiles.
+std::string Compile(const StageInfo& stage, const AssembledShader& source)
+{
+  const GLuint shader = glCreateShader(stage.Draws() ? GL_FRAGMENT_SHADER : GL_COMPUTE_SHADER);
+  const char* text = source.Text.c_str();
+  glShaderSource(shader, 1, &text, nullptr);
+  glCompileShader(shader);
+  GLint compiled = 0;
+  glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+  char log[4096] = "no log";
+  glGetShaderInfoLog(shader, sizeof(log), nullptr, log);
+  glDeleteShader(shader);
+  return compiled ? "" : NameFiles(log, source);
+}
+
+// Declares a buffer anew with only one kind of access.
+std::string WithAccess(std::string text, Buffer buffer, const char* qualifier)
+{
+  const std::string macro = PipelineBuffers()[static_cast<std::size_t>(buffer)].Macro;
+  const std::size_t begin = text.find("restrict", text.find("#define BUFFER_" + macro + " "));
+  const std::size_t end = text.find("buffer", begin);
+  return begin == std::string::npos ? text : text.replace(begin, end - begin, qualifier);
+}
+
+// Is there a scene for which the stage does not compile with this access alone?
+bool NeedsMoreThan(const StageInfo& stage, Buffer buffer, const char* qualifier)
+{
+  const std::vector<PipelineExtent> extents = Extents();
+  return std::any_of(extents.begin(), extents.end(),
+    [&](const PipelineExtent& extent)
+    {
+      AssembledShader source = Assemble(stage, extent);
+      source.Text = WithAccess(WithoutAtomics(source.Text), buffer, qualifier);
+      return IsNeeded(stage, extent) && !Compile(stage, source).empty();
+    });
+}
+
+class Shaders : public testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    this->Window->SetOffScreenRendering(1);
+    this->Window->Render();
+  }
+  vtkNew<vtkRenderWindow> Window;
+};
+}
+
+TEST(StageTable, IsInTheOrderOfItsEnumeration)
+{
+  ASSERT_EQ(PipelineStages().size(), static_cast<std::size_t>(NumberOfStages));
+  for (int i = 0; i < NumberOfStages; ++i)
+  {
+    EXPECT_EQ(static_cast<int>(PipelineStages()[static_cast<std::size_t>(i)].Id), i);
+  }
+  for (int i = 0; i < NumberOfBuffers; ++i)
+  {
+    EXPECT_EQ(static_cast<int>(PipelineBuffers()[static_cast<std::size_t>(i)].Id), i);
+  }
+}
+
+TEST(StageTable, BindsNoMoreBuffersThanGuaranteed)
+{
+  for (const StageInfo& stage : PipelineStages())
+  {
+    for (const PipelineExtent& extent : Extents())
+    {
+      EXPECT_LE(BoundBuffers(stage, extent).size(), GuaranteedBuffers) << stage.Name;
+    }
+  }
+}
+
+TEST_F(Shaders, CompileWithTheAccessOfTheTable)
+{
+  for (const StageInfo& stage : PipelineStages())
+  {
+    for (const PipelineExtent& extent : Extents())
+    {
+      if (IsNeeded(stage, extent))
+      {
+        AssembledShader source = Assemble(stage, extent);
+        EXPECT_EQ(Compile(stage, source), "") << stage.Name;
+        source.Text = WithoutAtomics(source.Text);
+        EXPECT_EQ(Compile(stage, source), "") << stage.Name;
+      }
+    }
+  }
+}
+
+TEST_F(Shaders, NeedAllTheAccessOfTheTable)
+{
+  for (const StageInfo& stage : PipelineStages())
+  {
+    for (const BufferUse& use : stage.Buffers)
+    {
+      const char* name = PipelineBuffers()[static_cast<std::size_t>(use.Id)].Name;
+      EXPECT_TRUE(!Reads(use.How) || NeedsMoreThan(stage, use.Id, "writeonly "))
+        << stage.Name << " does not read " << name;
+      EXPECT_TRUE(!Writes(use.How) || NeedsMoreThan(stage, use.Id, "readonly "))
+        << stage.Name << " does not write " << name;
+    }
+  }
+}
+
+TEST_F(Shaders, ErrorsNameFileAndLine)
+{
+  ShaderFiles files = ShaderSources();
+  const std::string broken =
+    std::string(files["Shared/Grid.glsl"]) + "#include \"Rays/Rays.glsl\"\nfloat x = nowhere;\n";
+  files["Shared/Grid.glsl"] = broken.c_str();
+  const auto lines = std::count(broken.begin(), broken.end(), '\n');
+  const std::string log =
+    Compile(InfoOf(Stage::CastRays), Assemble(InfoOf(Stage::CastRays), SmallExtent(true), files));
+  EXPECT_NE(log.find("Shared/Grid.glsl:" + std::to_string(lines)), std::string::npos) << log;
+  EXPECT_NE(log.find("nowhere"), std::string::npos) << log;
+}
+
+TEST(ShaderAssembler, NamesFilesInLogs)
+{
+  const AssembledShader shader = { "",
+    { { 1, "(generated)", 1 }, { 10, "A.comp", 1 }, { 20, "B.glsl", 1 }, { 30, "A.comp", 12 } } };
+  const std::string mesa = "0:33(5): error: no\n";
+  EXPECT_EQ(NameFiles(mesa, shader), "A.comp:15: error: no\n");
+  const std::string nvidia = "Compute info\n------------\n0(29) : error C1008: no\n";
+  EXPECT_EQ(NameFiles(nvidia, shader), "Compute info\n------------\nB.glsl:10 : error C1008: no\n");
+}
