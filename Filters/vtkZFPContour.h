@@ -43,9 +43,12 @@
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkProgIsoFiltersModule.h" // for export macro
 
-#include <memory> // for what is remembered of the input
+#include <memory> // for ranges
+#include <vector> // for isovalues
 
+class BrickRanges;
 class vtkCompressedVolume;
+class vtkImageData;
 
 class VTKPROGISOFILTERS_EXPORT vtkZFPContour : public vtkPolyDataAlgorithm
 {
@@ -157,10 +160,8 @@ private:
   vtkZFPContour(const vtkZFPContour&) = delete;
   void operator=(const vtkZFPContour&) = delete;
 
-  struct Ranges;
-  class Work;
-  bool Refuse(const std::string& reason);
-  bool CheckValues();
+  std::vector<double> GetIsovalues();
+  void ContourVolume(vtkImageData* input, vtkCompressedVolume* volume, vtkPolyData* output);
 
   vtkNew<vtkContourValues> ContourValues;
   vtkTypeBool ComputeNormals = true;
@@ -171,7 +172,7 @@ private:
   vtkIdType NumberOfBricks = 0;
   vtkIdType NumberOfDecodedBricks = 0;
   vtkTypeInt64 PeakSampleBytes = 0;
-  std::unique_ptr<Ranges> BrickRanges; // of the last input's bricks
+  std::unique_ptr<BrickRanges> Ranges; // of the last input's bricks
 };
 
 #endif

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vtkZFPBrickContour.h"
+#include "BrickContour.h"
+
+#include "Codec/BlockGeometry.h"
 
 #include "vtkBlockMask.h"
 #include "vtkCellArray.h"
@@ -21,9 +23,9 @@
 namespace
 {
 //------------------------------------------------------------------------------
-// Of every sample of a box whether it reaches the isovalue: 1, or 0.
+// Makes an image of a box of samples: 1 where they reach the isovalue, else 0.
 vtkSmartPointer<vtkImageData> Classify(
-  const vtkZFPBricks::Box& box, const vtkZFPBricks::Samples& samples, double isovalue)
+  const Bricks::Box& box, const Bricks::Samples& samples, double isovalue)
 {
   auto image = vtkSmartPointer<vtkImageData>::New();
   const int width = box.Last[0] - box.First[0] + 1;
@@ -60,10 +62,10 @@ vtkSmartPointer<vtkPolyData> Triangulate(vtkImageData* classes)
 }
 
 //------------------------------------------------------------------------------
-std::unique_ptr<vtkZFPBrickContour::Part> vtkZFPBrickContour::Extract(
-  vtkIdType brick, const vtkZFPBricks::Samples& samples, double isovalue) const
+std::unique_ptr<BrickContour::Part> BrickContour::Extract(
+  vtkIdType brick, const Bricks::Samples& samples, double isovalue) const
 {
-  const auto surface = Triangulate(Classify(this->Bricks.GetBox(brick), samples, isovalue));
+  const auto surface = Triangulate(Classify(this->AllBricks.GetBox(brick), samples, isovalue));
   auto part = std::make_unique<Part>();
   part->Brick = brick;
   const std::vector<int> numbers = this->AddPoints(surface, samples, isovalue, *part);
@@ -75,7 +77,7 @@ std::unique_ptr<vtkZFPBrickContour::Part> vtkZFPBrickContour::Extract(
     vtkIdType size = 0;
     const vtkIdType* corners = nullptr;
     iterator->GetCurrentCell(size, corners);
-    if (this->Hidden && !this->IsInVisibleCell(surface, corners, this->Bricks.GetBox(brick)))
+    if (this->Hidden && !this->IsInVisibleCell(surface, corners, this->AllBricks.GetBox(brick)))
     {
       continue;
     }
@@ -88,11 +90,25 @@ std::unique_ptr<vtkZFPBrickContour::Part> vtkZFPBrickContour::Extract(
 }
 
 //------------------------------------------------------------------------------
-// Fills all of a part but its triangles; returns what the surface's points are called there.
-std::vector<int> vtkZFPBrickContour::AddPoints(
-  vtkPolyData* surface, const vtkZFPBricks::Samples& samples, double isovalue, Part& part) const
+// Finds the edge whose middle is a point of a brick's triangulation.
+BrickContour::EdgePlace BrickContour::FindPlace(const double middle[3], const Bricks::Box& box)
 {
-  const vtkZFPBricks::Box box = this->Bricks.GetBox(part.Brick);
+  EdgePlace place = {};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int whole = static_cast<int>(middle[axis]);
+    place.Sample[axis] = box.First[axis] + whole;
+    place.Axis = middle[axis] > whole ? axis : place.Axis;
+  }
+  return place;
+}
+
+//------------------------------------------------------------------------------
+// Fills all of a part but its triangles. Returns for each point of the surface what Corners hold.
+std::vector<int> BrickContour::AddPoints(
+  vtkPolyData* surface, const Bricks::Samples& samples, double isovalue, Part& part) const
+{
+  const Bricks::Box box = this->AllBricks.GetBox(part.Brick);
   std::vector<int> numbers(surface->GetNumberOfPoints());
   part.Points.reserve(3 * numbers.size());
   part.Normals.reserve(this->ComputeNormals ? 3 * numbers.size() : 0);
@@ -101,19 +117,13 @@ std::vector<int> vtkZFPBrickContour::AddPoints(
   {
     double middle[3];
     surface->GetPoint(i, middle);
-    EdgePlace place = {};
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const int whole = static_cast<int>(middle[axis]);
-      place.Sample[axis] = box.First[axis] + whole;
-      place.Axis = middle[axis] > whole ? axis : place.Axis;
-    }
+    const EdgePlace place = FindPlace(middle, box);
     if (this->Hidden && !this->IsVisible(place))
     {
-      continue; // no triangle that is left has it
+      continue; // no visible triangle has this corner
     }
     const Edge edge = this->GetEdge(place);
-    if (this->Bricks.FindOwner(place.Sample) != part.Brick)
+    if (this->AllBricks.FindOwner(place.Sample) != part.Brick)
     {
       numbers[i] = ~static_cast<int>(part.Others.size());
       part.Others.push_back(edge);
@@ -131,27 +141,27 @@ std::vector<int> vtkZFPBrickContour::AddPoints(
 }
 
 //------------------------------------------------------------------------------
-vtkZFPBrickContour::Edge vtkZFPBrickContour::GetEdge(const EdgePlace& place) const
+BrickContour::Edge BrickContour::GetEdge(const EdgePlace& place) const
 {
-  const int* const dims = this->Bricks.GetDimensions();
+  const int* const dims = this->AllBricks.GetDimensions();
   const Edge sample =
     place.Sample[0] + dims[0] * (place.Sample[1] + static_cast<Edge>(dims[1]) * place.Sample[2]);
   return 3 * sample + place.Axis;
 }
 
 //------------------------------------------------------------------------------
-vtkIdType vtkZFPBrickContour::FindOwner(Edge edge) const
+vtkIdType BrickContour::FindOwner(Edge edge) const
 {
-  const int* const dims = this->Bricks.GetDimensions();
+  const int* const dims = this->AllBricks.GetDimensions();
   const Edge number = edge / 3;
   const int sample[3] = { static_cast<int>(number % dims[0]),
     static_cast<int>(number / dims[0] % dims[1]), static_cast<int>(number / dims[0] / dims[1]) };
-  return this->Bricks.FindOwner(sample);
+  return this->AllBricks.FindOwner(sample);
 }
 
 //------------------------------------------------------------------------------
-// Whether an edge that a brick owns lies in a face that another brick has too.
-bool vtkZFPBrickContour::IsShared(const EdgePlace& place, const vtkZFPBricks::Box& box) const
+// Whether an edge that a brick owns lies in a face that it shares with another brick.
+bool BrickContour::IsShared(const EdgePlace& place, const Bricks::Box& box) const
 {
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -164,18 +174,18 @@ bool vtkZFPBrickContour::IsShared(const EdgePlace& place, const vtkZFPBricks::Bo
 }
 
 //------------------------------------------------------------------------------
-bool vtkZFPBrickContour::IsHidden(const int cell[3]) const
+bool BrickContour::IsHidden(const int cell[3]) const
 {
-  const int* const dims = this->Bricks.GetDimensions();
-  const int blocks[3] = { (dims[0] + 3) / 4, (dims[1] + 3) / 4, (dims[2] + 3) / 4 };
+  const int* const dims = this->AllBricks.GetDimensions();
+  const int blocks[3] = { BlocksAlong(dims[0]), BlocksAlong(dims[1]), BlocksAlong(dims[2]) };
   return this->Hidden->Hides(cell, blocks);
 }
 
 //------------------------------------------------------------------------------
 // Whether any of the cells around an edge is visible.
-bool vtkZFPBrickContour::IsVisible(const EdgePlace& place) const
+bool BrickContour::IsVisible(const EdgePlace& place) const
 {
-  const int* const dims = this->Bricks.GetDimensions();
+  const int* const dims = this->AllBricks.GetDimensions();
   for (int side = 0; side < 4; ++side)
   {
     int cell[3] = { place.Sample[0], place.Sample[1], place.Sample[2] };
@@ -191,12 +201,12 @@ bool vtkZFPBrickContour::IsVisible(const EdgePlace& place) const
 }
 
 //------------------------------------------------------------------------------
-// A triangle between the middles of a cell's edges has its centre in the cell, or, seldom, in the
-// face that it shares with another.
-bool vtkZFPBrickContour::IsInVisibleCell(
-  vtkPolyData* surface, const vtkIdType corners[3], const vtkZFPBricks::Box& box) const
+// Whether a triangle belongs to a visible cell. Its corners are middles of a cell's edges, so that
+// its centre lies in the cell, or, rarely, in the face between two cells.
+bool BrickContour::IsInVisibleCell(
+  vtkPolyData* surface, const vtkIdType corners[3], const Bricks::Box& box) const
 {
-  const int* const dims = this->Bricks.GetDimensions();
+  const int* const dims = this->AllBricks.GetDimensions();
   double sum[3] = { 0.0, 0.0, 0.0 };
   for (int i = 0; i < 3; ++i)
   {
@@ -204,7 +214,7 @@ bool vtkZFPBrickContour::IsInVisibleCell(
     surface->GetPoint(corners[i], point);
     vtkMath::Add(sum, point, sum);
   }
-  int high[3], low[3]; // alike but where the centre is in a face
+  int high[3], low[3]; // the cells around the centre; the same cell unless it lies in a face
   for (int axis = 0; axis < 3; ++axis)
   {
     const int sixths = static_cast<int>(2.0 * sum[axis]); // exact: coordinates are halves
@@ -215,9 +225,9 @@ bool vtkZFPBrickContour::IsInVisibleCell(
 }
 
 //------------------------------------------------------------------------------
-// In the operations and precision of vtkFlyingEdges3D, so that every bit agrees.
-void vtkZFPBrickContour::AddPoint(
-  const EdgePlace& place, const vtkZFPBricks::Samples& samples, double isovalue, Part& part) const
+// Computes a point with the operations and precision of vtkFlyingEdges3D, so that every bit agrees.
+void BrickContour::AddPoint(
+  const EdgePlace& place, const Bricks::Samples& samples, double isovalue, Part& part) const
 {
   const int* const start = place.Sample;
   int end[3] = { start[0], start[1], start[2] };
@@ -257,15 +267,15 @@ void vtkZFPBrickContour::AddPoint(
 }
 
 //------------------------------------------------------------------------------
-// Central differences, one-sided at the volume's borders and where the next samples are hidden.
-void vtkZFPBrickContour::FindGradient(
-  const int sample[3], const vtkZFPBricks::Samples& samples, float gradient[3]) const
+// Takes central differences, one-sided at the volume's borders and beside hidden samples.
+void BrickContour::FindGradient(
+  const int sample[3], const Bricks::Samples& samples, float gradient[3]) const
 {
   const float* const value = samples.At(sample[0], sample[1], sample[2]);
   for (int axis = 0; axis < 3; ++axis)
   {
-    const bool low = !this->HasNeighbour(sample, axis, -1);
-    const bool high = !this->HasNeighbour(sample, axis, 1);
+    const bool low = !this->HasNeighbor(sample, axis, -1);
+    const bool high = !this->HasNeighbor(sample, axis, 1);
     const float below = low ? *value : value[-samples.Stride[axis]];
     const float above = high ? *value : value[samples.Stride[axis]];
     const float difference = above - below;
@@ -274,24 +284,24 @@ void vtkZFPBrickContour::FindGradient(
 }
 
 //------------------------------------------------------------------------------
-bool vtkZFPBrickContour::HasNeighbour(const int sample[3], int axis, int side) const
+bool BrickContour::HasNeighbor(const int sample[3], int axis, int side) const
 {
   const int next = sample[axis] + side;
   EdgePlace place = { { sample[0], sample[1], sample[2] }, axis };
   place.Sample[axis] = std::min(next, sample[axis]);
-  return next >= 0 && next < this->Bricks.GetDimensions()[axis] &&
+  return next >= 0 && next < this->AllBricks.GetDimensions()[axis] &&
     (!this->Hidden || this->IsVisible(place));
 }
 
 //------------------------------------------------------------------------------
-void vtkZFPBrickContour::Join(
+void BrickContour::WriteCorners(
   const Part& part, const std::unique_ptr<Part>* parts, vtkTypeInt64* corners) const
 {
-  std::vector<vtkTypeInt64> others;
+  std::vector<vtkTypeInt64> others; // in the whole mesh
   others.reserve(part.Others.size());
   for (const Edge edge : part.Others)
   {
-    // there: the edge's ends are samples of its owner, one on either side of the isovalue
+    // the owner has this point: the edge's ends are its samples, on either side of the isovalue
     const Part& owner = *parts[this->FindOwner(edge)];
     const auto found =
       std::lower_bound(owner.Shared.begin(), owner.Shared.end(), std::make_pair(edge, 0));

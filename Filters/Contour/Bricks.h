@@ -1,27 +1,27 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @class   vtkZFPBricks
- * @brief   a compressed volume cut into bricks, for work that decodes one at a time (internal)
+ * @class   Bricks
+ * @brief   a compressed volume cut into bricks, to decode one at a time (internal)
  *
  * A brick is a box of Size^3 cells, fewer at the upper borders, with all samples at their corners:
  * neighbours share a face of samples. Size is a multiple of 4, so that bricks begin where zfp's
- * blocks do. All positions count from the volume's first sample.
+ * blocks do. Positions count from the volume's first sample.
  */
-#ifndef vtkZFPBricks_h
-#define vtkZFPBricks_h
+#ifndef Bricks_h
+#define Bricks_h
 
 #include "vtkType.h"
 
-#include <vector> // for samples
+#include <vector>
 
 class BlockStream;
 
-class vtkZFPBricks
+class Bricks
 {
 public:
   /**
-   * First sample along each axis, and the last, which is included.
+   * The first and the last sample along each axis, both included.
    */
   struct Box
   {
@@ -30,7 +30,7 @@ public:
   };
 
   /**
-   * Samples decoded of a box that begins and ends where blocks do. What lies outside of the volume
+   * Decoded samples of a box that begins and ends where blocks do. What lies outside of the volume
    * is zfp's padding.
    */
   struct Samples
@@ -47,7 +47,7 @@ public:
   };
 
   /**
-   * The smallest and largest of some samples; NaN counts as the smallest.
+   * The smallest and the largest of some samples; NaN counts as the smallest.
    */
   struct Range
   {
@@ -55,26 +55,25 @@ public:
     float Maximum;
 
     /**
-     * Whether an isosurface passes between the samples: one is below, another is not.
+     * Whether an isosurface passes between the samples: one is below the isovalue, another is not.
      */
-    bool Holds(double isovalue) const
+    bool Contains(double isovalue) const
     {
       return this->Minimum < isovalue && this->Maximum >= isovalue;
     }
   };
 
   /**
-   * For a volume of at least 2 samples along each axis; size is a multiple of 4.
+   * Cuts a volume of at least 2 samples along each axis; size is a multiple of 4.
    */
-  vtkZFPBricks(const int dims[3], int size);
+  Bricks(const int dims[3], int size);
 
   const int* GetDimensions() const { return this->Dimensions; }
   vtkIdType GetNumberOfBricks() const;
 
   ///@{
   /**
-   * A brick's samples; its place among the bricks along each axis; and the brick with a given
-   * place.
+   * A brick's samples, its place among the bricks along each axis, and the brick with a place.
    */
   Box GetBox(vtkIdType brick) const;
   void GetPlace(vtkIdType brick, int place[3]) const;
@@ -82,24 +81,25 @@ public:
   ///@}
 
   /**
-   * The brick that owns what begins at a sample: the one furthest up among those that hold it.
+   * Returns the brick that owns the edges that begin at a sample: of those with this sample, the
+   * one furthest up along each axis.
    */
   vtkIdType FindOwner(const int sample[3]) const;
 
   /**
-   * Decode a brick, and the samples up to `halo` around it where the volume has them.
+   * Decodes a brick, and the samples up to `halo` around it that the volume has.
    */
   void Decode(const BlockStream& blocks, vtkIdType brick, int halo, Samples& samples) const;
 
   /**
-   * The range of a decoded brick's own samples.
+   * Finds the range of a decoded brick's samples, without those around it.
    */
   Range FindRange(vtkIdType brick, const Samples& samples) const;
 
 private:
   int Dimensions[3];
   int Size;
-  int Bricks[3];
+  int BricksPerAxis[3];
 };
 
 #endif
