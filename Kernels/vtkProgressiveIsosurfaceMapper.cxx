@@ -279,16 +279,17 @@ bool vtkProgressiveIsosurfaceMapper::Internals::ReportPipeline()
 vtkDataArray* vtkProgressiveIsosurfaceMapper::Internals::FindArray(
   vtkImageData* image, bool& cellData)
 {
+  if (this->Owner->ScalarMode == VTK_SCALAR_MODE_DEFAULT)
+  {
+    int association = vtkCompressedVolume::PointData;
+    vtkDataArray* array = vtkImageZFPCompress::FindDefaultArray(image, association);
+    cellData = association == vtkCompressedVolume::CellData;
+    return array;
+  }
   int cellFlag = 0;
   vtkDataArray* array = vtkAbstractMapper::GetScalars(image, this->Owner->ScalarMode,
     this->Owner->ArrayAccessMode, this->Owner->ArrayId, this->Owner->ArrayName, cellFlag);
   cellData = cellFlag == 1;
-  if (!array && this->Owner->ScalarMode == VTK_SCALAR_MODE_DEFAULT)
-  {
-    int association = vtkCompressedVolume::PointData;
-    array = vtkImageZFPCompress::FindDefaultArray(image, association);
-    cellData = association == vtkCompressedVolume::CellData;
-  }
   return array;
 }
 

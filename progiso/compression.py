@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from vtkmodules.vtkCommonCore import reference
+
 from ._vtk import image_data, observe_progress, vtk_errors
 from .geometry import as_image
 from .vtkProgIsoFilters import vtkCompressedVolume, vtkImageZFPCompress, vtkImageZFPDecompress
@@ -104,14 +106,18 @@ def find_array(image, array=None):
     ValueError
         When there is none; the message lists those that there are.
     """
-    for of_cells, attributes in enumerate((image.GetPointData(), image.GetCellData())):
-        arrays = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]
-        for found in (attributes.GetScalars(), *arrays):
-            if found is None or (array is None and found.GetName() == GHOSTS):
-                continue
-            if array in (None, found.GetName()):
-                return found, bool(of_cells)
     data = (image.GetPointData(), image.GetCellData())
+    if array is None:
+        association = reference(_POINTS)
+        found = vtkImageZFPCompress.FindDefaultArray(image, association)
+        if found is not None:
+            return found, association.get() == _CELLS
+    else:
+        for of_cells, attributes in enumerate(data):
+            arrays = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]
+            for found in (attributes.GetScalars(), *arrays):
+                if found is not None and found.GetName() == array:
+                    return found, bool(of_cells)
     names = [d.GetArrayName(i) for d in data for i in range(d.GetNumberOfArrays())]
     listed = ", ".join(repr(name) for name in names) or "none"
     wanted = "array" if array is None else f"array {array!r}"

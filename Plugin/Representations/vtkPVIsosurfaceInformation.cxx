@@ -33,7 +33,7 @@ bool Receive(const vtkClientServerStream& stream, int argument, std::vector<doub
 }
 
 //------------------------------------------------------------------------------
-// Value of a pass; one that was not needed leaves things as the last did.
+// Finds the value after a pass. A process that needed fewer passes keeps its last value.
 double AfterPass(const std::vector<double>& values, std::size_t pass)
 {
   return values[std::min(pass, values.size() - 1)];

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkPVIsosurfaceInformation
- * @brief   what the last image of a progressive isosurface cost, over all processes that draw it
+ * @brief   cost of a progressive isosurface's last image, over all processes that draw it
  *
- * Gathered from a vtkProgressiveIsosurfaceRepresentation. Processes that drew nothing (a client
- * that shows what a server renders, a process without a piece) do not count. Of the others the sum
- * is taken of what each has of its own, bytes, and the slowest of what they share, the image.
+ * Gathers statistics from a vtkProgressiveIsosurfaceRepresentation. Processes that draw nothing (a
+ * client that shows what a server renders, a process without a piece) do not count. Of all others,
+ * bytes are summed, and of passes, completeness and times the slowest process counts.
  */
 
 #ifndef vtkPVIsosurfaceInformation_h
@@ -32,23 +32,23 @@ public:
   void CopyFromStream(const vtkClientServerStream* stream) override;
   ///@}
 
-  /// Processes that draw a piece.
+  /// Number of processes that draw a piece.
   vtkGetMacro(NumberOfProcesses, int);
 
-  /// Passes of the process that took most; fraction of the pixels that are complete, 0 … 1, and
-  /// milliseconds of the image, both of the process that is behind.
+  /// Passes of the process that needed most; fraction of the pixels that are complete, 0 … 1, of
+  /// the process with the least; milliseconds of the image on the slowest process.
   int GetNumberOfPasses() const { return static_cast<int>(this->PassMilliseconds.size()); }
   vtkGetMacro(CompletedFraction, double);
   vtkGetMacro(TotalMilliseconds, double);
 
-  /// Bytes of graphics memory: all of it, the compressed stream's part, and what the memory budget
-  /// allows beside that part. Doubles: ParaView's panel shows no 64-bit integers.
+  /// Graphics memory in bytes: in total, of the compressed stream, and the budget for the rest.
+  /// ParaView's panel shows no 64-bit integers, so these are doubles.
   vtkGetMacro(GPUBytes, double);
   vtkGetMacro(CompressedBytes, double);
   vtkGetMacro(MemoryBudget, double);
 
-  /// For each pass the milliseconds from the start of the image to its end, and the fraction of the
-  /// pixels that were complete then.
+  /// For each pass, the milliseconds from the start of the image to the end of the pass, and the
+  /// fraction of the pixels that were complete then.
   const std::vector<double>& GetPassMilliseconds() const { return this->PassMilliseconds; }
   const std::vector<double>& GetPassCompleted() const { return this->PassCompleted; }
 

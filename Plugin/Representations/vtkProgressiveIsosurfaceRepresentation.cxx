@@ -2,23 +2,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkProgressiveIsosurfaceRepresentation.h"
 
+#include "DistributedPieces.h"
+#include "Pieces/PieceExtents.h"
+#include "vtkPVIsosurfaceLODVolume.h"
+
 #include "vtkCellData.h"
 #include "vtkColorTransferFunction.h"
-#include "vtkCommunicator.h"
 #include "vtkCompressedVolume.h"
 #include "vtkContourValues.h"
 #include "vtkDataArray.h"
 #include "vtkDiscretizableColorTransferFunction.h"
-#include "vtkExtractVOI.h"
-#include "vtkGhostCellsGenerator.h"
 #include "vtkImageData.h"
+#include "vtkImageZFPCompress.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkLODProp3D.h"
-#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkOutlineSource.h"
-#include "vtkPVLODVolume.h"
 #include "vtkPVRenderView.h"
 #include "vtkPVView.h"
 #include "vtkPiecewiseFunction.h"
@@ -33,114 +32,7 @@
 
 namespace
 {
-/**
- * Draws its volume mapper in the opaque pass, or where isosurfaces are translucent in the
- * volumetric pass, as vtkIsosurfaceVolume does. ParaView's own class draws it always in the latter,
- * and only when the input has scalars, which a compressed volume has not.
- */
-class vtkPVIsosurfaceLODVolume : public vtkPVLODVolume
-{
-public:
-  static vtkPVIsosurfaceLODVolume* New();
-  vtkTypeMacro(vtkPVIsosurfaceLODVolume, vtkPVLODVolume);
-
-  int RenderOpaqueGeometry(vtkViewport* viewport) override
-  {
-    if (this->ShowsOutline())
-    {
-      return this->Superclass::RenderOpaqueGeometry(viewport);
-    }
-    return this->IsTranslucent() ? 0 : this->RenderIsosurfaces(viewport);
-  }
-
-  int RenderVolumetricGeometry(vtkViewport* viewport) override
-  {
-    return !this->ShowsOutline() && this->IsTranslucent() ? this->RenderIsosurfaces(viewport) : 0;
-  }
-
-protected:
-  vtkPVIsosurfaceLODVolume() = default;
-  ~vtkPVIsosurfaceLODVolume() override = default;
-
-private:
-  bool IsTranslucent()
-  {
-    return vtkProgressiveIsosurfaceMapper::IsTranslucent(this->GetProperty());
-  }
-
-  int RenderIsosurfaces(vtkViewport* viewport)
-  {
-    const int drawn = this->LODProp->RenderVolumetricGeometry(viewport);
-    this->EstimatedRenderTime = this->LODProp->GetEstimatedRenderTime();
-    return drawn;
-  }
-
-  /// True on processes that have no data and show its outline in place of it.
-  bool ShowsOutline() { return this->SelectLOD() != this->HighLODId; }
-
-  vtkPVIsosurfaceLODVolume(const vtkPVIsosurfaceLODVolume&) = delete;
-  void operator=(const vtkPVIsosurfaceLODVolume&) = delete;
-};
-vtkStandardNewMacro(vtkPVIsosurfaceLODVolume);
-
-// ---- what the processes that share an image agree on
-int NumberOfProcesses()
-{
-  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
-  return controller ? controller->GetNumberOfProcesses() : 1;
-}
-
-bool AnyProcess(bool here)
-{
-  const int mine = here ? 1 : 0;
-  int any = mine;
-  vtkMultiProcessController::GetGlobalController()->AllReduce(
-    &mine, &any, 1, vtkCommunicator::MAX_OP);
-  return any != 0;
-}
-
-bool IsEmpty(const int extent[6])
-{
-  return extent[0] > extent[1] || extent[2] > extent[3] || extent[4] > extent[5];
-}
-
-bool Contains(const int outer[6], const int inner[6])
-{
-  return outer[0] <= inner[0] && inner[1] <= outer[1] && outer[2] <= inner[2] &&
-    inner[3] <= outer[3] && outer[4] <= inner[4] && inner[5] <= outer[5];
-}
-
-// The extent around all processes' own.
-void FindWholeExtent(const int own[6], int whole[6])
-{
-  int mine[6];
-  for (int i = 0; i < 6; ++i)
-  {
-    const int sign = i % 2 == 0 ? -1 : 1; // one reduction to the largest
-    mine[i] = IsEmpty(own) ? -VTK_INT_MAX : sign * own[i];
-  }
-  vtkMultiProcessController::GetGlobalController()->AllReduce(
-    mine, whole, 6, vtkCommunicator::MAX_OP);
-  for (int i = 0; i < 6; i += 2)
-  {
-    whole[i] = -whole[i];
-  }
-}
-
-// The image without its ghost cells and arrays, which a compressed volume has none of.
-vtkSmartPointer<vtkImageData> WithoutGhosts(vtkImageData* image)
-{
-  int extent[6];
-  vtkCompressedVolume::GetOwnExtent(image, extent);
-  auto own = vtkSmartPointer<vtkImageData>::New();
-  own->CopyStructure(image);
-  own->GetPointData()->Initialize(); // ghost arrays that hide come with the structure
-  own->GetCellData()->Initialize();
-  own->SetExtent(extent);
-  own->GetFieldData()->PassData(image->GetFieldData());
-  return own;
-}
-
+// Blocks that a ray may test in one pass.
 constexpr int SPECULATION_ON = 64;
 constexpr int SPECULATION_OFF = 1;
 }
@@ -151,7 +43,7 @@ vtkStandardNewMacro(vtkProgressiveIsosurfaceRepresentation);
 vtkProgressiveIsosurfaceRepresentation::vtkProgressiveIsosurfaceRepresentation()
 {
   auto mapper = vtkSmartPointer<vtkProgressiveIsosurfaceMapper>::New();
-  mapper->LitLikeMeshesOn(); // as Contour's surface, whose place it takes
+  mapper->LitLikeMeshesOn(); // looks like the surface of ParaView's Contour
   this->VolumeMapper = mapper;
   this->Actor = vtkSmartPointer<vtkPVIsosurfaceLODVolume>::New();
   this->Actor->SetProperty(this->Property);
@@ -174,8 +66,7 @@ int vtkProgressiveIsosurfaceRepresentation::ProcessViewRequest(
   }
   if (requestType == vtkPVView::REQUEST_UPDATE())
   {
-    // The superclass asks for ordered compositing, as translucent volumes need it; opaque surfaces
-    // composite by depth.
+    // The superclass asks for ordered compositing; opaque surfaces are composited by depth.
     this->UpdateLook();
     if (!vtkProgressiveIsosurfaceMapper::IsTranslucent(this->Property))
     {
@@ -191,7 +82,8 @@ int vtkProgressiveIsosurfaceRepresentation::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   const int good = this->Superclass::RequestUpdateExtent(request, inputVector, outputVector);
-  if (inputVector[0]->GetNumberOfInformationObjects() == 1 && NumberOfProcesses() > 1)
+  if (inputVector[0]->GetNumberOfInformationObjects() == 1 &&
+    DistributedPieces::GetNumberOfProcesses() > 1)
   {
     inputVector[0]->GetInformationObject(0)->Set(
       vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(),
@@ -207,28 +99,27 @@ int vtkProgressiveIsosurfaceRepresentation::RequestData(
   this->Cache = nullptr;
   const bool hasInput = inputVector[0]->GetNumberOfInformationObjects() == 1;
   vtkImageData* image = hasInput ? vtkImageData::GetData(inputVector[0], 0) : nullptr;
-  // A process without input has no data of its own and shows the outline.
+  // a process without input has no data and shows the outline
   this->CanDraw = !hasInput || this->FindDrawnArray(image);
   if (!image)
   {
     return this->Superclass::RequestData(request, inputVector, outputVector);
   }
-  vtkSmartPointer<vtkImageData> piece = this->MakePiece(image);
-  int own[6];
-  vtkCompressedVolume::GetOwnExtent(piece, own);
-  this->SetPiece(piece, own);
+  this->SetPiece(this->MakePiece(image));
   vtkStreamingDemandDrivenPipeline::GetWholeExtent(
     inputVector[0]->GetInformationObject(0), this->WholeExtent);
-  // not vtkImageVolumeRepresentation's: it would cut off the ghost cells
+  // skips vtkImageVolumeRepresentation's, which would cut off the ghost cells
   return this->vtkVolumeRepresentation::RequestData(request, inputVector, outputVector);
 }
 
 //------------------------------------------------------------------------------
-void vtkProgressiveIsosurfaceRepresentation::SetPiece(vtkImageData* piece, const int own[6])
+void vtkProgressiveIsosurfaceRepresentation::SetPiece(vtkImageData* piece)
 {
+  int extent[6];
+  PieceExtents::GetExtentWithoutGhosts(piece, extent);
   vtkNew<vtkImageData> outline;
   outline->CopyStructure(piece);
-  outline->SetExtent(const_cast<int*>(own));
+  outline->SetExtent(extent);
   outline->GetBounds(this->DataBounds);
   this->OutlineSource->SetBounds(this->DataBounds);
   this->OutlineSource->Update();
@@ -241,64 +132,23 @@ void vtkProgressiveIsosurfaceRepresentation::SetPiece(vtkImageData* piece, const
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::MakePiece(vtkImageData* image)
 {
-  if (NumberOfProcesses() == 1)
+  if (DistributedPieces::GetNumberOfProcesses() == 1)
   {
     auto whole = vtkSmartPointer<vtkImageData>::Take(image->NewInstance());
     whole->ShallowCopy(image);
     return whole;
   }
-  int own[6];
-  vtkCompressedVolume::GetOwnExtent(image, own);
-  // all processes have to take the same way: they exchange samples on it
-  const bool compressed = AnyProcess(vtkCompressedVolume::IsCompressed(image));
-  return compressed ? this->MakeCompressedPiece(image, own) : this->MakePlainPiece(image, own);
+  // all processes have to make the same kind of piece: they exchange samples for it
+  if (DistributedPieces::IsTrueAnywhere(vtkCompressedVolume::IsCompressed(image)))
+  {
+    return DistributedPieces::MakeCompressedPiece(image, this->CanDraw);
+  }
+  return DistributedPieces::MakePlainPiece(this->SelectArrays(image),
+    this->DrawnArray.Association == vtkDataObject::FIELD_ASSOCIATION_CELLS);
 }
 
 //------------------------------------------------------------------------------
-vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::MakeCompressedPiece(
-  vtkImageData* image, const int own[6])
-{
-  vtkSmartPointer<vtkImageData> piece = WithoutGhosts(image);
-  vtkNew<vtkCompressedVolume> volume;
-  if (this->CanDraw && piece->GetNumberOfPoints() > 0 && volume->Read(piece))
-  {
-    volume->Crop(own);
-    volume->Write(piece);
-  }
-  return piece;
-}
-
-//------------------------------------------------------------------------------
-vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::MakePlainPiece(
-  vtkImageData* image, const int own[6])
-{
-  vtkSmartPointer<vtkImageData> piece = this->SelectDrawnArray(image);
-  int whole[6], covering[6];
-  FindWholeExtent(own, whole);
-  vtkCompressedVolume::GetCoveringExtent(own, whole, this->DrawnArray.Association, covering);
-  const bool lacks = !IsEmpty(own) && !Contains(image->GetExtent(), covering);
-  if (AnyProcess(lacks))
-  {
-    vtkNew<vtkGhostCellsGenerator> generator;
-    generator->SetInputData(piece);
-    generator->BuildIfRequiredOff();
-    generator->SetNumberOfGhostLayers(vtkCompressedVolume::NumberOfGhostLevels);
-    generator->Update();
-    piece = vtkImageData::SafeDownCast(generator->GetOutput());
-  }
-  if (IsEmpty(own))
-  {
-    return piece;
-  }
-  vtkNew<vtkExtractVOI> cut;
-  cut->SetInputData(piece);
-  cut->SetVOI(covering);
-  cut->Update();
-  return cut->GetOutput();
-}
-
-//------------------------------------------------------------------------------
-vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::SelectDrawnArray(
+vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::SelectArrays(
   vtkImageData* image)
 {
   auto selected = vtkSmartPointer<vtkImageData>::New();
@@ -331,12 +181,12 @@ bool vtkProgressiveIsosurfaceRepresentation::FindDrawnArray(vtkImageData* image)
 bool vtkProgressiveIsosurfaceRepresentation::FindCompressedArray(vtkImageData* image)
 {
   vtkNew<vtkCompressedVolume> volume;
-  vtkSmartPointer<vtkImageData> own = WithoutGhosts(image);
-  if (own->GetNumberOfPoints() == 0)
+  vtkSmartPointer<vtkImageData> piece = DistributedPieces::WithoutGhosts(image);
+  if (piece->GetNumberOfPoints() == 0)
   {
-    return false; // there is more than one process, and this one has no piece
+    return false; // other processes have all pieces
   }
-  if (!volume->Read(own))
+  if (!volume->Read(piece))
   {
     vtkErrorMacro("Progressive Isosurface: " << volume->GetErrorMessage());
     return false;
@@ -351,21 +201,16 @@ bool vtkProgressiveIsosurfaceRepresentation::FindPlainArray(vtkImageData* image)
   this->DrawnArray = this->IsosurfaceArray;
   if (this->DrawnArray.Name.empty())
   {
-    vtkDataArray* scalars = image->GetPointData()->GetScalars();
-    this->DrawnArray.Association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
-    if (!scalars)
-    {
-      scalars = image->GetCellData()->GetScalars();
-      this->DrawnArray.Association = vtkDataObject::FIELD_ASSOCIATION_CELLS;
-    }
-    this->DrawnArray.Name = scalars && scalars->GetName() ? scalars->GetName() : "";
+    int association = vtkCompressedVolume::PointData;
+    vtkDataArray* array = vtkImageZFPCompress::FindDefaultArray(image, association);
+    this->DrawnArray = { association, array && array->GetName() ? array->GetName() : "" };
   }
   vtkDataSetAttributes* arrays = image->GetAttributes(this->DrawnArray.Association);
   if (arrays && arrays->GetArray(this->DrawnArray.Name.c_str()))
   {
     return true;
   }
-  // A process may hold an empty piece of a distributed image, which has no arrays at all.
+  // a process may hold an empty piece of a distributed image, which has no arrays
   if (image->GetNumberOfPoints() > 0)
   {
     vtkErrorMacro("Progressive Isosurface: the image has no array \""
@@ -385,7 +230,6 @@ bool vtkProgressiveIsosurfaceRepresentation::IsColoredByDrawnArray()
 }
 
 //------------------------------------------------------------------------------
-// Of the arrays that could give the colours; empty where none beside the drawn one does.
 std::string vtkProgressiveIsosurfaceRepresentation::FindOtherColorArray(vtkImageData* image)
 {
   vtkInformation* color = this->GetInputArrayInformation(0);
@@ -406,17 +250,17 @@ void vtkProgressiveIsosurfaceRepresentation::SetInputArrayToProcess(
   int index, int port, int connection, int association, const char* name)
 {
   this->Superclass::SetInputArrayToProcess(index, port, connection, association, name);
-  if (NumberOfProcesses() > 1)
+  if (DistributedPieces::GetNumberOfProcesses() > 1)
   {
-    this->MarkModified(); // the pieces hold no other arrays than those that are seen
+    this->MarkModified(); // pieces hold only the arrays that are drawn
   }
 }
 
 //------------------------------------------------------------------------------
 void vtkProgressiveIsosurfaceRepresentation::UpdateMapperParameters()
 {
-  // Nothing here may touch a modified time without need: ParaView calls this before every image,
-  // and a mapper that believes its scene changed starts its refinement anew.
+  // ParaView calls this before every image: what has not changed must keep its modified time, or
+  // the mapper restarts the image.
   this->VolumeMapper->SelectScalarArray(this->DrawnArray.Name.c_str());
   this->VolumeMapper->SetScalarMode(
     this->DrawnArray.Association == vtkDataObject::FIELD_ASSOCIATION_CELLS
@@ -506,7 +350,7 @@ void vtkProgressiveIsosurfaceRepresentation::SetIsovalue(int index, double value
 //------------------------------------------------------------------------------
 void vtkProgressiveIsosurfaceRepresentation::SetDiffuseColor(double red, double green, double blue)
 {
-  // One node: the same colour at every isovalue.
+  // one node gives every isovalue the same colour
   this->SolidColor->RemoveAllPoints();
   this->SolidColor->AddRGBPoint(0.0, red, green, blue);
 }

@@ -5,17 +5,17 @@
  * @brief   ParaView representation of image data as a progressive isosurface
  *
  * Shows plain image data and compressed volumes (see vtkCompressedVolume) through
- * vtkProgressiveIsosurfaceMapper. Opaque surfaces are drawn in the opaque pass, where translucent
- * geometry blends over them, and ask for no ordered compositing; translucent ones are drawn with
- * the volumes. Colour: the colour map at the isovalue when the representation is coloured by the
- * array that is drawn, the solid colour otherwise.
+ * vtkProgressiveIsosurfaceMapper. Opaque surfaces are drawn in the opaque pass, so that translucent
+ * geometry blends over them, and need no ordered compositing; translucent ones are drawn with the
+ * volumes. If the representation is coloured by the array that is drawn, a surface has the colour
+ * map's colour at its isovalue, otherwise the solid colour.
  *
- * Image data only: rectilinear grids and composite data are refused with an error.
+ * Shows image data only: rectilinear grids and composite data are an error.
  *
- * Where several processes share an image, each draws its own piece, and ParaView composites them. A
- * process takes with its piece the samples around it that normals need, in whole blocks of the
- * whole image, so that every process decodes the same values and no seam shows: it asks the
- * pipeline for ghost levels, and where that has none, exchanges them with the others.
+ * If several processes share an image, each draws its own piece, and ParaView composites them. With
+ * its piece a process takes the surrounding samples that normals need, in whole blocks of the whole
+ * image, so that all processes decode the same values and no seam shows. It requests ghost levels
+ * from the pipeline, and exchanges samples with the other processes if the pipeline has none.
  */
 
 #ifndef vtkProgressiveIsosurfaceRepresentation_h
@@ -42,9 +42,9 @@ public:
     vtkInformation* outInfo) override;
 
   /**
-   * The array to draw an isosurface of, in plain image data; empty: the active scalars. A
-   * compressed volume holds one array and ignores this. The signature is that of ParaView's array
-   * selection properties.
+   * The array to draw an isosurface of, in plain image data; empty: the default array, as
+   * vtkImageZFPCompress chooses it. A compressed volume holds one array and ignores this. The
+   * signature is that of ParaView's array selection properties.
    */
   void SetIsosurfaceArray(int index, int port, int connection, int association, const char* name);
 
@@ -57,14 +57,15 @@ public:
   void SetIsovalue(int index, double value);
   ///@}
 
-  /// Colour of the surface where no colour map applies.
+  /// Colour of the surface if no colour map applies.
   void SetDiffuseColor(double red, double green, double blue);
 
-  /// Opacity of the surface, 0 … 1. A colour map that maps opacities has a say too.
+  /// Opacity of the surface, 0 … 1. It is multiplied by the opacity of a colour map that maps
+  /// opacities.
   void SetOpacity(double opacity);
 
-  /// Colour map, used when the representation is coloured by the isosurface array, or by another
-  /// one of a plain image that has the same association.
+  /// Colour map, used if the representation is coloured by the isosurface array, or by another
+  /// array of a plain image with the same association.
   void SetColor(vtkColorTransferFunction* colorMap);
 
   using Superclass::SetInputArrayToProcess;
@@ -74,7 +75,7 @@ public:
 
   ///@{
   /**
-   * Forwarded to the mapper: bits per voxel for plain data, whether their NaN is hidden,
+   * Properties of the mapper: bits per voxel for plain data, whether NaN in them is hidden,
    * speculation on or off, and the memory budget in mebibytes (0: automatic).
    */
   void SetRate(double bitsPerVoxel);
@@ -84,8 +85,8 @@ public:
   ///@}
 
   ///@{
-  /// What draws the surface on this process, and the statistics of its last image. See
-  /// vtkPVIsosurfaceInformation for those of all processes.
+  /// The mapper that draws the surface on this process, and the statistics of its last image. See
+  /// vtkPVIsosurfaceInformation for the statistics of all processes.
   vtkProgressiveIsosurfaceMapper* GetIsosurfaceMapper();
   vtkProgressiveIsosurfaceStatistics* GetStatistics();
   ///@}
@@ -110,38 +111,35 @@ private:
   };
 
   ///@{
-  /// Sets DrawnArray from the input; false after an error that says why nothing can be drawn.
+  /// Sets DrawnArray from the input. Returns false if nothing can be drawn, after an error that
+  /// says why.
   bool FindDrawnArray(vtkImageData* image);
   bool FindCompressedArray(vtkImageData* image);
   bool FindPlainArray(vtkImageData* image);
   ///@}
 
-  ///@{
-  /// What this process draws of its input: with several processes, its piece and what it needs of
-  /// the samples around it.
+  /// Makes what this process draws of its input: with several processes, its piece and the samples
+  /// around it that it needs.
   vtkSmartPointer<vtkImageData> MakePiece(vtkImageData* image);
-  vtkSmartPointer<vtkImageData> MakeCompressedPiece(vtkImageData* image, const int own[6]);
-  vtkSmartPointer<vtkImageData> MakePlainPiece(vtkImageData* image, const int own[6]);
-  vtkSmartPointer<vtkImageData> SelectDrawnArray(vtkImageData* image);
-  ///@}
+  /// Copies an image with only the array that is drawn, the one that gives the colours, and ghosts.
+  vtkSmartPointer<vtkImageData> SelectArrays(vtkImageData* image);
+  /// Takes what is drawn, and finds its outline and size.
+  void SetPiece(vtkImageData* piece);
 
-  /// Take over what is drawn, and its outline and size.
-  void SetPiece(vtkImageData* piece, const int own[6]);
-
-  /// True when the representation is coloured by the array that is drawn.
+  /// Whether the representation is coloured by the array that is drawn.
   bool IsColoredByDrawnArray();
 
   ///@{
-  /// The array that gives the colours in place of the one that is drawn.
+  /// Finds the array that gives the colours in place of the one that is drawn; empty if none does.
   std::string FindOtherColorArray(vtkImageData* image);
   void UpdateColors();
   ///@}
 
-  /// Sets the property's colours, and its opacities: a function with one node an isovalue.
+  /// Sets the property's colours, and its opacities: a function with one node for each isovalue.
   void UpdateLook();
 
-  ArraySelection IsosurfaceArray; ///< as chosen by the user, its name empty for the active scalars
-  ArraySelection DrawnArray;      ///< the array of the present input
+  ArraySelection IsosurfaceArray; ///< as chosen by the user; without a name: the default array
+  ArraySelection DrawnArray;      ///< of the present input
   vtkSmartPointer<vtkColorTransferFunction> ColorMap;
   vtkNew<vtkColorTransferFunction> SolidColor;
   double Opacity = 1.0;

@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkSMIsovalueDomain
- * @brief   range of the values that an isovalue can take
+ * @brief   range of an isovalue
  *
- * For plain image data the range is that of the chosen array (the required property
- * "ArraySelection"), as vtkSMArrayRangeDomain finds it. A compressed volume has no such array: its
- * range is that of the original values, which it carries as field data. Without either the domain
- * is empty.
+ * For plain image data this is the range of the chosen array (the required property
+ * "ArraySelection"), as vtkSMArrayRangeDomain finds it. A compressed volume has no such array, but
+ * keeps the range of the original values as field data. Without either the domain is empty.
  */
 
 #ifndef vtkSMIsovalueDomain_h
@@ -32,7 +31,7 @@ protected:
   ~vtkSMIsovalueDomain() override = default;
 
 private:
-  /// The compressed volume's range as ParaView has gathered it, or nullptr when the input is no
+  /// Finds the compressed volume's range as ParaView has gathered it; null if the input is no
   /// compressed volume.
   vtkPVArrayInformation* FindCompressedRange();
 

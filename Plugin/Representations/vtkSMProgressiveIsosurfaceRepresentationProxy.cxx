@@ -46,12 +46,12 @@ void vtkSMProgressiveIsosurfaceRepresentationProxy::OnImage()
   if (this->IsActive())
   {
     this->UpdatePropertyInformation();
-    this->WarnOfNothing();
+    this->WarnIfNothingShows();
   }
 }
 
 //------------------------------------------------------------------------------
-void vtkSMProgressiveIsosurfaceRepresentationProxy::WarnOfNothing()
+void vtkSMProgressiveIsosurfaceRepresentationProxy::WarnIfNothingShows()
 {
   vtkSMProperty* property = this->GetProperty("Isovalues");
   auto* domain =

@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkSMProgressiveIsosurfaceRepresentationProxy
- * @brief   keeps the figures of a progressive isosurface up to date
+ * @brief   keeps the statistics of a progressive isosurface up to date
  *
- * ParaView asks a representation for its information properties when its data change. Passes,
- * completed fraction and times change with every image instead, so this proxy asks after each image
- * of the view that shows it. It asks all processes that draw, wherever they are: ParaView's own way
- * ends at the client, which in remote rendering draws nothing. What they say is in the information
- * properties and, pass by pass, in GetStatistics(); observers hear of news by
- * UpdateInformationEvent. It warns, once, where no isovalue lies in the array's range.
+ * ParaView updates the information properties of a representation when its data change. Passes,
+ * completed fraction and times change with every image, so this proxy updates them after each image
+ * of its view. It gathers them from all processes that draw: ParaView would ask only the client,
+ * which draws nothing in remote rendering. The information properties hold the result, and
+ * GetStatistics() each pass of it; UpdateInformationEvent tells observers of changes. The proxy
+ * warns once if no isovalue lies in the array's range.
  */
 
 #ifndef vtkSMProgressiveIsosurfaceRepresentationProxy_h
@@ -32,7 +32,7 @@ public:
 
   void ViewUpdated(vtkSMProxy* view) override;
 
-  /// What was last gathered. UpdatePropertyInformation() gathers anew.
+  /// The statistics as last gathered; UpdatePropertyInformation() gathers them again.
   vtkPVIsosurfaceInformation* GetStatistics();
 
 protected:
@@ -42,15 +42,14 @@ protected:
   void UpdatePropertyInformationInternal(vtkSMProperty* property) override;
 
 private:
-  /// After an image of the view.
+  /// Called after an image of the view.
   void OnImage();
 
-  /// Whether this is how the data are shown: as one of several representations, of which one is
-  /// active.
+  /// Whether this is the active one of the representations of the data.
   bool IsActive();
 
-  /// Says so where all isovalues lie outside the values of the array, as soon as they do.
-  void WarnOfNothing();
+  /// Warns when all isovalues have come to lie outside the range of the array.
+  void WarnIfNothingShows();
 
   void StopObserving();
 

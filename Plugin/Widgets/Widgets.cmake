@@ -10,7 +10,7 @@ list(APPEND sources
   "${CMAKE_CURRENT_LIST_DIR}/pqIsosurfaceStatisticsWidget.cxx"
   "${CMAKE_CURRENT_LIST_DIR}/pqIsosurfaceStatisticsWidget.h")
 
-# what a distribution's ParaView links its window with, for files and charts; the widgets need none of it
+# A distribution's ParaView names these libraries as dependencies of its window; the widgets need none of them.
 foreach (library IN ITEMS Boost::boost LibXml2::LibXml2 NetCDF::NetCDF Qt5::OpenGL hdf5::hdf5 hdf5::hdf5_hl)
   if (NOT TARGET "${library}")
     add_library("${library}" INTERFACE IMPORTED GLOBAL)

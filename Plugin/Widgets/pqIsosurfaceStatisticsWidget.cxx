@@ -24,7 +24,7 @@ constexpr int ROWS_SHOWN = 5;
 
 QString percent(double fraction)
 {
-  // an image that lacks one pixel is not complete
+  // round down: an image that lacks one pixel is not complete
   const double shown = fraction < 1.0 ? std::floor(1000.0 * fraction) / 10.0 : 100.0;
   return QString::number(shown, 'f', fraction < 1.0 ? 1 : 0) + " %";
 }
@@ -51,7 +51,7 @@ pqIsosurfaceStatisticsWidget::pqIsosurfaceStatisticsWidget(
   , Image(new QLabel(this))
   , Passes(new QTableWidget(this))
 {
-  // the group is the panel's, its properties are those of the representation inside
+  // the group belongs to the panel, its properties to the representation's proxy
   vtkSMProperty* first = group->GetNumberOfProperties() > 0 ? group->GetProperty(0u) : nullptr;
   this->Source = vtkSMProgressiveIsosurfaceRepresentationProxy::SafeDownCast(
     first ? first->GetParent() : nullptr);

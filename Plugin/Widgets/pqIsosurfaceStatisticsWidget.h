@@ -4,10 +4,10 @@
  * @class   pqIsosurfaceStatisticsWidget
  * @brief   shows in ParaView's panel how a progressive isosurface refines
  *
- * The widget of the property group of a progressive isosurface's figures: how much of the image is
- * complete, memory against the budget, passes, and the time that each pass took. It follows its
- * vtkSMProgressiveIsosurfaceRepresentationProxy, which gathers the figures after every image, and
- * changes nothing.
+ * Shows the property group of a progressive isosurface's statistics: how much of the image is
+ * complete, memory and its budget, and the passes with their times. It follows its
+ * vtkSMProgressiveIsosurfaceRepresentationProxy, which gathers the statistics after every image,
+ * and changes nothing.
  */
 
 #ifndef pqIsosurfaceStatisticsWidget_h
@@ -33,7 +33,7 @@ public:
   ~pqIsosurfaceStatisticsWidget() override;
 
 private Q_SLOTS:
-  /// Show what the proxy has gathered.
+  /// Shows what the proxy has gathered.
   void showStatistics();
 
 private:

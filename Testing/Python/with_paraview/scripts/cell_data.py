@@ -12,7 +12,7 @@ from common import (
     screenshot,
     show_isosurface,
 )
-from paraview import simple
+from paraview import servermanager, simple
 
 load_plugin()
 view = make_view()
@@ -54,5 +54,16 @@ display = show_isosurface(
     vectors, view, IsosurfaceArray=["POINTS", "vectors"], IsosurfaceComponent=2, Isovalues=[300.0]
 )
 check_same(chosen, screenshot(view, "component.png"), tolerance=1)
+simple.Hide(vectors, view)
+
+# no array chosen, and no active scalars: the first array, as the filter and the mapper take it
+image = servermanager.Fetch(wavelet)
+image.GetPointData().SetActiveScalars(None)
+inactive = simple.TrivialProducer()
+inactive.GetClientSideObject().SetOutput(image)
+display = show_isosurface(inactive, view, IsosurfaceArray=["POINTS", ""], Isovalues=[150.0])
+assert list(display.IsosurfaceArray) == ["POINTS", ""], list(display.IsosurfaceArray)
+default = screenshot(view, "default_array.png")
+check_same(chosen, default, tolerance=1)
 
 finish(covered=covered(shown), range=values)

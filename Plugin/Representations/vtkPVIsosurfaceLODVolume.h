@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkPVIsosurfaceLODVolume
+ * @brief   draws opaque isosurfaces in the opaque pass, translucent ones with the volumes
+ *
+ * Does for ParaView what vtkIsosurfaceVolume does. ParaView's own class always draws with the
+ * volumes, and only if the input has scalars, which a compressed volume has not.
+ */
+#ifndef vtkPVIsosurfaceLODVolume_h
+#define vtkPVIsosurfaceLODVolume_h
+
+#include "vtkPVLODVolume.h"
+
+class vtkPVIsosurfaceLODVolume : public vtkPVLODVolume
+{
+public:
+  static vtkPVIsosurfaceLODVolume* New();
+  vtkTypeMacro(vtkPVIsosurfaceLODVolume, vtkPVLODVolume);
+
+  int RenderOpaqueGeometry(vtkViewport* viewport) override;
+  int RenderVolumetricGeometry(vtkViewport* viewport) override;
+
+protected:
+  vtkPVIsosurfaceLODVolume() = default;
+  ~vtkPVIsosurfaceLODVolume() override = default;
+
+private:
+  bool IsTranslucent();
+  /// True on processes without data: they show the outline.
+  bool ShowsOutline();
+  int RenderIsosurfaces(vtkViewport* viewport);
+
+  vtkPVIsosurfaceLODVolume(const vtkPVIsosurfaceLODVolume&) = delete;
+  void operator=(const vtkPVIsosurfaceLODVolume&) = delete;
+};
+
+#endif
