@@ -1,4 +1,5 @@
-"""The ParaView stack: the plugin in pvpython and pvbatch, and this folder's other tests on ParaView's own VTK."""
+"""The ParaView stack: the plugin in pvpython and pvbatch, and this folder's other tests on
+ParaView's own VTK."""
 
 import json
 import os
@@ -20,25 +21,17 @@ def packages(build):
     return found[0]
 
 
-@pytest.fixture(scope="module")
-def plugin(build):
-    found = [p for p in build.glob("lib/**/ProgIso.so") if "plugins" in str(p)]
-    assert found, f"no plugin below {build}/lib"
-    return found[0]
-
-
 @pytest.fixture(scope="module", params=["pvpython", "pvbatch"])
-def shown(request, build, plugin, packages, tmp_path_factory):
+def shown(request, build, packages, tmp_path_factory):
     """Run the script that shows everything; return the folder with its pictures."""
     import progiso
 
     folder = tmp_path_factory.mktemp(request.param)
-    progiso.save(progiso.compress(make_image(marschner_lobb(64)), rate=8), folder / "volume.vti")
-    script = SCRIPTS / "show.py"
-    output = under_x(
-        request.param, script, plugin, folder / "volume.vti", folder, python_path=[packages]
-    )
-    assert "done" in output and not any(word in output for word in WARNINGS), output[-6000:]
+    progiso.save(progiso.compress(make_image(marschner_lobb(64)), 8), folder / "volume.vti")
+    output = under_x(request.param, SCRIPTS / "show.py", build, folder, python_path=[packages])
+    assert not any(word in output for word in WARNINGS), output[-6000:]
+    (facts,) = [line for line in output.splitlines() if line.startswith("{")]
+    (folder / "facts.json").write_text(facts)
     return folder
 
 
@@ -69,19 +62,31 @@ def test_facts(shown):
 
 
 def test_ways_to_the_same_picture(shown):
-    """Compressed on the fly or before, within a budget, with and without speculation: not one pixel differs."""
+    """Compressed on the fly or before, within a budget, with and without speculation: not one pixel
+    differs."""
     for ways in (("plain", "compressed"), ("whole", "budget", "no-speculation")):
         first, *others = (pictures.read_png(shown / f"paraview-{way}.png") for way in ways)
         assert np.ptp(first) > 100
         assert all(np.array_equal(first, other) for other in others)
 
 
-# --- the other tests, with ParaView's VTK and Python ------------------------------------------------------------------------------
+# --- the other tests, with ParaView's VTK and Python ----------------------------------------------
 
 CORE = {
-    "filters": ["compression/test_filters.py"],
-    "contour": ["compression/test_contour.py", "-k", "not mri-brain"],
-    "files": ["compression/test_compress_file.py", "-k", "not nii and not memory"],
+    "filters": [
+        *(f"compression/test_{name}.py" for name in ("filters", "filter_errors", "volume_files")),
+        "compression/test_pieces.py",
+    ],
+    "contour": [
+        *(f"compression/test_contour{name}.py" for name in ("", "_bricks", "_files")),
+        "-k",
+        "not mri-brain",
+    ],
+    "files": [
+        *(f"compression/test_{name}.py" for name in ("compress_file", "large_files")),
+        "-k",
+        "not nii and not memory",
+    ],
     "decoder": ["rendering/test_decode.py", "-k", "all_rates or extreme or random_streams"],
     "depth": [
         "rendering/test_depth.py",
@@ -89,9 +94,7 @@ CORE = {
         "white_noise or geometry or user_matrix or camera_inside or ct-cranium",
     ],
     "invariance": [
-        "rendering/test_invariance.py",
-        "rendering/test_statistics.py",
-        "rendering/test_progressive.py",
+        f"rendering/test_{name}.py" for name in ("invariance", "statistics", "progressive")
     ],
     "scenes": ["rendering/test_scene.py", "with_pyvista/test_pyvista.py"],
 }
@@ -101,7 +104,7 @@ CORE = {
 def test_core_on_paraviews_vtk(part, tmp_path, build):
     python = os.environ.get("PROGISO_PARAVIEW_PYTHON")
     assert python, (
-        "PROGISO_PARAVIEW_PYTHON does not name a Python with pytest, pyvista and the package of the build"
+        "PROGISO_PARAVIEW_PYTHON names no Python with pytest, pyvista and the build's package"
     )
     arguments = [str(TESTS / a) if a.endswith(".py") else a for a in CORE[part]]
     output = under_x(

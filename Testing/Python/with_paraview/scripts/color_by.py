@@ -1,34 +1,28 @@
-"""Another array gives the surface its colours, through its own colour map; the isosurface array gives one colour again."""
+"""Another array gives the surface its colours, through its own colour map; the isosurface array
+gives one colour again."""
 
-from common import (
-    check_same,
-    covered,
-    finish,
-    load_plugin,
-    look,
-    make_view,
-    make_wavelet,
-    screenshot,
-    show_isosurface,
-)
+import session
 from paraview import simple
 
-load_plugin()
-view = make_view()
-source = simple.Calculator(Input=make_wavelet(), ResultArrayName="right", Function="coordsX")
-display = show_isosurface(source, view, IsosurfaceArray=["POINTS", "RTData"], Isovalues=[150.0])
-look(view, azimuth=0, elevation=0)
+view = session.start()
+source = simple.Calculator(
+    Input=session.make_wavelet(), ResultArrayName="right", Function="coordsX"
+)
+display = session.show_isosurface(
+    source, view, IsosurfaceArray=["POINTS", "RTData"], Isovalues=[150.0]
+)
+session.look(view, azimuth=0, elevation=0)
 simple.ColorBy(display, ("POINTS", "RTData"))
 display.SetScalarBarVisibility(view, False)
-plain = screenshot(view, "color_by_isosurface_array.png")
+plain = session.screenshot(view, "color_by_isosurface_array.png")
 
 simple.ColorBy(display, ("POINTS", "right"))
 display.SetScalarBarVisibility(view, False)
 colours = simple.GetColorTransferFunction("right")
 colours.ColorSpace = "RGB"
 colours.RGBPoints = [-24.0, 0.0, 0.0, 1.0, 24.0, 1.0, 0.0, 0.0]
-coloured = screenshot(view, "color_by_right.png")
-assert covered(coloured) == covered(plain) > 0.1, "the same surface"
+coloured = session.screenshot(view, "color_by_right.png")
+assert session.covered(coloured) == session.covered(plain) > 0.1, "the same surface"
 seen = abs(coloured - coloured[0, 0]).max(axis=2) > 8
 width = coloured.shape[1]
 left, right = (
@@ -38,12 +32,12 @@ left, right = (
 assert left[2] > 2 * left[0] and right[0] > 2 * right[2], (left, right)
 
 colours.RGBPoints = [-24.0, 0.0, 0.0, 1.0, 24.0, 0.0, 1.0, 0.0]
-other = screenshot(view, "color_by_other_map.png")
+other = session.screenshot(view, "color_by_other_map.png")
 assert other[:, width // 2 :, 1].mean() > 1.5 * coloured[:, width // 2 :, 1].mean(), (
     "a change of the map shows"
 )
 
 simple.ColorBy(display, ("POINTS", "RTData"))
 display.SetScalarBarVisibility(view, False)
-check_same(plain, screenshot(view, "color_by_again.png"))
-finish(left=left, right=right)
+session.check_same(plain, session.screenshot(view, "color_by_again.png"))
+session.finish(left=left, right=right)

@@ -1,44 +1,28 @@
 """Inputs that cannot be drawn: one error that says why, an empty image, and no crash."""
 
-from common import (
-    PROGRESSIVE_ISOSURFACE,
-    covered,
-    finish,
-    load_plugin,
-    make_view,
-    make_wavelet,
-    screenshot,
-    show_isosurface,
-)
+import session
 from paraview import simple
-from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 
-load_plugin()
-view = make_view()
+view = session.start()
 
 
 def show_and_listen(source, name):
-    """Pixels of `source` as isosurface, and what was said on the way."""
-    usual = vtkOutputWindow.GetInstance()
-    listener = vtkStringOutputWindow()
-    vtkOutputWindow.SetInstance(listener)
-    try:
+    """Return the pixels of `source` as an isosurface, and what was said on the way."""
+    with session.messages() as listener:
         display = simple.Show(source, view)
-        display.SetRepresentationType(PROGRESSIVE_ISOSURFACE)
+        display.SetRepresentationType(session.PROGRESSIVE_ISOSURFACE)
         simple.ResetCamera(view)
-        return screenshot(view, name), listener.GetOutput()
-    finally:
-        vtkOutputWindow.SetInstance(usual)
+        return session.screenshot(view, name), listener.GetOutput()
 
 
 def check_refused(source, expected, name):
     pixels, messages = show_and_listen(source, name)
-    assert covered(pixels) == 0.0, name
+    assert session.covered(pixels) == 0.0, name
     assert expected in messages, f"{name}: {expected!r} not in {messages!r}"
     simple.Delete(source)
 
 
-empty = simple.PassArrays(Input=make_wavelet())
+empty = simple.PassArrays(Input=session.make_wavelet())
 empty.PointDataArrays = []
 check_refused(empty, "no compressed volume", "errors_no_array.png")
 
@@ -53,7 +37,9 @@ output.PointData.append(numpy.arange(64.0), "values")
 """
 check_refused(rectilinear, "image data only", "errors_rectilinear.png")
 
-damaged = simple.ProgrammableFilter(Input=simple.ZFPCompress(Input=make_wavelet()), CopyArrays=1)
+damaged = simple.ProgrammableFilter(
+    Input=simple.ZFPCompress(Input=session.make_wavelet()), CopyArrays=1
+)
 damaged.Script = """
 image = self.GetImageDataOutput()
 image.ShallowCopy(self.GetInput())
@@ -65,17 +51,15 @@ image.GetFieldData().AddArray(bits)
 check_refused(damaged, "Progressive Isosurface: ", "errors_damaged.png")
 
 # isovalues that no sample has: a warning, not an error, once until one is in the range again
-usual, listener = vtkOutputWindow.GetInstance(), vtkStringOutputWindow()
-vtkOutputWindow.SetInstance(listener)
-display = show_isosurface(make_wavelet(), view, Isovalues=[150.0])
 warnings = []
-for isovalues in ([150.0], [1000.0], [2000.0, -5.0], [2000.0, 150.0], [-5.0]):
-    display.Isovalues = isovalues
-    simple.Render(view)
-    simple.Render(view)
-    warnings.append(listener.GetOutput().count("outside the values of the array, 33.9"))
-vtkOutputWindow.SetInstance(usual)
+with session.messages() as listener:
+    display = session.show_isosurface(session.make_wavelet(), view, Isovalues=[150.0])
+    for isovalues in ([150.0], [1000.0], [2000.0, -5.0], [2000.0, 150.0], [-5.0]):
+        display.Isovalues = isovalues
+        simple.Render(view)
+        simple.Render(view)
+        warnings.append(listener.GetOutput().count("outside the values of the array, 33.9"))
 assert warnings == [0, 1, 1, 1, 2], (warnings, listener.GetOutput())
 assert "ERROR" not in listener.GetOutput()
 
-finish(messages="seen")
+session.finish(messages="seen")

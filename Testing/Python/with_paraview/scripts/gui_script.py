@@ -1,5 +1,6 @@
-"""Runs inside ParaView's own window (see gui.sh): shows a compressed volume as progressive isosurface, as a user would, and reports
-how the image refined while the window stayed responsive, and what the panel said meanwhile. Writes gui.json when it has converged."""
+"""Runs inside ParaView's own window (see gui.sh): shows a compressed volume as progressive
+isosurface, as a user would, and reports how the image refined while the window stayed responsive,
+and what the panel said meanwhile. Writes gui.json when it has converged."""
 
 import json
 import os
@@ -43,7 +44,7 @@ def panel():
 
 
 def arrange():
-    """Give the panel room and scroll it to the statistics; then let the event loop make an image."""
+    """Give the panel room, scroll it to the statistics, and let the event loop make an image."""
     window.findChild(QtWidgets.QDockWidget, "pipelineBrowserDock").hide()
     dock = window.findChild(QtWidgets.QDockWidget, "propertiesDock")
     window.resizeDocks([dock], [480], QtCore.Qt.Horizontal)
@@ -55,7 +56,8 @@ def arrange():
     area.ensureWidgetVisible(widget)
     display.MemoryBudget = 36  # too little for the whole volume, so that there are passes to see
     view.SMProxy.AddObserver("EndEvent", look_at_progress)
-    # from here on the window's event loop makes the images: an interactive one, then whatever the mapper asks for
+    # from here on the window's event loop makes the images: an interactive one, then whatever the
+    # mapper asks for
     camera.Azimuth(5)
     view.SMProxy.InteractiveRender()
 

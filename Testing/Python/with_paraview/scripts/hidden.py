@@ -1,23 +1,11 @@
-"""Holes: NaN where it is to be hidden, and blanked points, plain and compressed; an error where NaN is not."""
+"""Holes: NaN where it is to be hidden, and blanked points, plain and compressed; an error where NaN
+is not."""
 
-from common import (
-    check_converged,
-    check_same,
-    covered,
-    finish,
-    load_plugin,
-    look,
-    make_view,
-    make_wavelet,
-    screenshot,
-    show_isosurface,
-)
+import session
 from paraview import simple
-from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 
-load_plugin()
-view = make_view()
-wavelet = make_wavelet()
+view = session.start()
+wavelet = session.make_wavelet()
 
 # scripts of programmable filters share these names with this script
 HOLE = """
@@ -40,7 +28,7 @@ blanked = simple.ProgrammableFilter(Input=wavelet, Script=HOLE + MARK)
 
 def shoot(source, name, **properties):
     """A picture of a source alone."""
-    display = show_isosurface(
+    display = session.show_isosurface(
         source,
         view,
         Isovalues=[150.0],
@@ -48,26 +36,26 @@ def shoot(source, name, **properties):
         CompressionRate=12.0,
         **properties,
     )
-    look(view)
-    pixels = screenshot(view, name)
-    check_converged(display)
+    session.look(view)
+    pixels = session.screenshot(view, name)
+    session.check_converged(display)
     simple.Hide(source, view)
     return pixels
 
 
 whole = shoot(wavelet, "hidden_nothing.png")
 seen = shoot(spoiled, "hidden_nan.png", MaskNaN=1)
-assert 0 < covered(seen) and (abs(seen - whole).max(axis=2) > 8).mean() > 0.02
-check_same(seen, shoot(blanked, "hidden_points.png"))
-check_same(
+assert 0 < session.covered(seen) and (abs(seen - whole).max(axis=2) > 8).mean() > 0.02
+session.check_same(seen, shoot(blanked, "hidden_points.png"))
+session.check_same(
     seen, shoot(simple.ZFPCompress(Input=spoiled, Rate=12, MaskNaN=1), "hidden_compressed.png")
 )
-check_same(seen, shoot(simple.ZFPCompress(Input=blanked, Rate=12), "hidden_compressed_points.png"))
+session.check_same(
+    seen, shoot(simple.ZFPCompress(Input=blanked, Rate=12), "hidden_compressed_points.png")
+)
 
-usual, listener = vtkOutputWindow.GetInstance(), vtkStringOutputWindow()
-vtkOutputWindow.SetInstance(listener)
-simple.ZFPCompress(Input=spoiled).UpdatePipeline()
-vtkOutputWindow.SetInstance(usual)
+with session.messages() as listener:
+    simple.ZFPCompress(Input=spoiled).UpdatePipeline()
 assert "NaN" in listener.GetOutput(), listener.GetOutput()
 
-finish(covered=covered(seen))
+session.finish(covered=session.covered(seen))

@@ -1,24 +1,14 @@
-"""The isosurface among other geometry: it hides and is hidden by depth, and translucent geometry blends over it."""
+"""The isosurface among other geometry: it hides and is hidden by depth, and translucent geometry
+blends over it."""
 
-from common import (
-    check_same,
-    covered,
-    finish,
-    load_plugin,
-    look,
-    make_view,
-    make_wavelet,
-    screenshot,
-    show_isosurface,
-)
+import session
 from paraview import simple
 
-load_plugin()
-view = make_view()
-wavelet = make_wavelet()
-display = show_isosurface(wavelet, view, Isovalues=[150.0], DiffuseColor=[1.0, 1.0, 1.0])
-look(view, azimuth=0, elevation=0)
-alone = screenshot(view, "opaque_alone.png")
+view = session.start()
+wavelet = session.make_wavelet()
+display = session.show_isosurface(wavelet, view, Isovalues=[150.0], DiffuseColor=[1.0, 1.0, 1.0])
+session.look(view, azimuth=0, elevation=0)
+alone = session.screenshot(view, "opaque_alone.png")
 surface = abs(alone - alone[0, 0]).max(axis=2) > 8
 
 
@@ -39,21 +29,22 @@ def shows(pixels, channel):
 
 # behind the image: hidden wherever the isosurface is
 behind = sphere(-40.0, 12.0, [1.0, 0.0, 0.0], 1.0)
-pixels = screenshot(view, "opaque_behind.png")
-check_same(alone[surface], pixels[surface], tolerance=1)  # the light's direction is rounded anew
+pixels = session.screenshot(view, "opaque_behind.png")
+# but for the light's direction, which is rounded anew
+session.check_same(alone[surface], pixels[surface], tolerance=1)
 assert not (shows(pixels, 0) & surface).any()
 assert shows(pixels, 0).any(), "the sphere behind is seen through the holes"
 simple.Hide(behind, view)
 
 # in front, opaque: hides
 front = sphere(34.0, 8.0, [0.0, 0.0, 1.0], 1.0)
-pixels = screenshot(view, "opaque_front.png")
+pixels = session.screenshot(view, "opaque_front.png")
 hidden = shows(pixels, 2)
 assert (hidden & surface).sum() > 500, (hidden & surface).sum()
 
 # in front, translucent: a quarter of the isosurface is seen through its two sides
 simple.GetDisplayProperties(front, view).Opacity = 0.5
-pixels = screenshot(view, "opaque_translucent.png")
+pixels = session.screenshot(view, "opaque_translucent.png")
 blended = pixels[hidden & surface]
 assert (blended[:, 0] < alone[hidden & surface][:, 0]).mean() > 0.95
 assert blended[:, 0].mean() > 0.15 * alone[hidden & surface][:, 0].mean(), blended.mean(axis=0)
@@ -62,8 +53,8 @@ assert (blended[:, 2] > blended[:, 0]).mean() > 0.95
 # a transform moves it
 simple.Hide(front, view)
 display.Position = [100.0, 0.0, 0.0]
-assert covered(screenshot(view, "opaque_moved_away.png")) == 0.0
+assert session.covered(session.screenshot(view, "opaque_moved_away.png")) == 0.0
 simple.ResetCamera(view)
-assert covered(screenshot(view, "opaque_moved.png")) > 0.1
+assert session.covered(session.screenshot(view, "opaque_moved.png")) > 0.1
 
-finish(covered=covered(alone))
+session.finish(covered=session.covered(alone))

@@ -1,32 +1,20 @@
-"""What the panel offers arrives where it is drawn: isovalues, opacity, colour map, light, memory; in several views, undone and done again."""
+"""What the panel offers arrives where it is drawn: isovalues, opacity, colour map, light, memory;
+in several views, undone and done again."""
 
-from common import (
-    check_close,
-    check_converged,
-    check_same,
-    covered,
-    finish,
-    information,
-    load_plugin,
-    look,
-    make_view,
-    make_wavelet,
-    screenshot,
-    show_isosurface,
-)
+import session
 from paraview import servermanager, simple
 
-load_plugin()
+session.load_plugin()
 # from the start, as in ParaView's window: a proxy's first state must be known
 stack, builder = servermanager.vtkSMUndoStack(), servermanager.vtkSMUndoStackBuilder()
 builder.SetUndoStack(stack)
 servermanager.vtkSMProxyManager.GetProxyManager().SetUndoStackBuilder(builder)
 
-view = make_view()
-wavelet = make_wavelet()
-display = show_isosurface(wavelet, view, Isovalues=[150.0], DiffuseColor=[0.9, 0.85, 0.7])
-look(view)
-first = screenshot(view, "panel.png")
+view = session.make_view()
+wavelet = session.make_wavelet()
+display = session.show_isosurface(wavelet, view, Isovalues=[150.0], DiffuseColor=[0.9, 0.85, 0.7])
+session.look(view)
+first = session.screenshot(view, "panel.png")
 
 
 def drawn_property(of=view):
@@ -47,29 +35,29 @@ assert isovalues() == [150.0]
 display.Isovalues = [120.0, 150.0, 200.0]
 simple.Render(view)
 assert isovalues() == [120.0, 150.0, 200.0] == list(display.Isovalues), isovalues()
-assert covered(screenshot(view, "panel_several.png")) > covered(first)
+assert session.covered(session.screenshot(view, "panel_several.png")) > session.covered(first)
 display.Isovalues = [150.0]
 simple.Render(view)
 assert isovalues() == [150.0], isovalues()
-check_same(first, screenshot(view, "panel_again.png"))
+session.check_same(first, session.screenshot(view, "panel_again.png"))
 low, high = wavelet.PointData["RTData"].GetRange()
 domain = display.GetProperty("Isovalues").SMProperty.FindDomain("vtkSMDoubleRangeDomain")
-check_close(domain.GetMinimum(0), low, "lower end of the slider")
-check_close(domain.GetMaximum(0), high, "upper end of the slider")
+session.check_close(domain.GetMinimum(0), low, "lower end of the slider")
+session.check_close(domain.GetMaximum(0), high, "upper end of the slider")
 
 # light
 power, display.SpecularPower = display.SpecularPower, 3.0
 for name, value in (("Ambient", 0.4), ("Diffuse", 0.5), ("Specular", 0.8)):
     before = getattr(display, name)
     setattr(display, name, value)
-    lit = screenshot(view, f"panel_{name}.png")
+    lit = session.screenshot(view, f"panel_{name}.png")
     assert abs(lit - first).mean() > 1.0, name
     setattr(display, name, before)
-check_same(first, screenshot(view, "panel_again.png"))
+session.check_same(first, session.screenshot(view, "panel_again.png"))
 display.Specular = 0.8
-broad = screenshot(view, "panel_broad.png")
+broad = session.screenshot(view, "panel_broad.png")
 display.SpecularPower = 90.0
-assert (broad - screenshot(view, "panel_narrow.png")).mean() > 1.0, (
+assert (broad - session.screenshot(view, "panel_narrow.png")).mean() > 1.0, (
     "highlights narrow with the power"
 )
 display.Specular, display.SpecularPower = 0.0, power
@@ -77,8 +65,8 @@ display.Specular, display.SpecularPower = 0.0, power
 # opacity: the solid one, and that of a colour map which maps opacities
 display.Opacity = 0.25
 simple.Render(view)
-check_close(drawn_property().GetScalarOpacity().GetValue(150.0), 0.25, "opacity")
-faint = screenshot(view, "panel_faint.png")
+session.check_close(drawn_property().GetScalarOpacity().GetValue(150.0), 0.25, "opacity")
+faint = session.screenshot(view, "panel_faint.png")
 assert abs(faint - faint[0, 0]).mean() < 0.8 * abs(first - first[0, 0]).mean(), (
     "the background is seen through it"
 )
@@ -108,19 +96,21 @@ opacities.Points = [
 ]
 colours.EnableOpacityMapping = 1
 simple.Render(view)
-check_close(drawn_property().GetScalarOpacity().GetValue(150.0), 0.25 * 0.4, "opacity by the map")
+session.check_close(
+    drawn_property().GetScalarOpacity().GetValue(150.0), 0.25 * 0.4, "opacity by the map"
+)
 colours.EnableOpacityMapping = 0
 display.Opacity = 1.0
 simple.Render(view)
-check_close(drawn_property().GetScalarOpacity().GetValue(150.0), 1.0, "opaque again")
+session.check_close(drawn_property().GetScalarOpacity().GetValue(150.0), 1.0, "opaque again")
 red, green, blue = colours.RGBPoints[1:4]
-check_close(
+session.check_close(
     drawn_property().GetRGBTransferFunction().GetRedValue(colours.RGBPoints[0]),
     red,
     "colour of the map",
 )
 simple.ColorBy(display, None)
-check_same(first, screenshot(view, "panel_solid.png"))
+session.check_same(first, session.screenshot(view, "panel_solid.png"))
 
 # undo and redo
 builder.Begin("isosurfaces")
@@ -136,28 +126,28 @@ assert list(display.Isovalues) == [150.0] and display.MemoryBudget == 0, (
     list(display.Isovalues),
     display.MemoryBudget,
 )
-check_same(first, screenshot(view, "panel_undone.png"))
+session.check_same(first, session.screenshot(view, "panel_undone.png"))
 stack.Redo()
 proxies.UpdateRegisteredProxies(1)
 assert list(display.Isovalues) == [90.0, 220.0] and display.MemoryBudget == 64
 simple.Render(view)
 assert isovalues() == [90.0, 220.0], isovalues()
-check_close(information(display)["budget"], 64 * 2**20, "budget done again")
+session.check_close(session.information(display)["budget"], 64 * 2**20, "budget done again")
 display.Isovalues, display.MemoryBudget = [150.0], 0
 
 # a second view of the same data has its own isovalue and figures, and leaves the first alone
-other_view = make_view()
+other_view = session.make_view()
 view.UseFXAA = 0  # a new view sets it anew, in all
-other = show_isosurface(wavelet, other_view, Isovalues=[220.0], Speculation=0)
-look(other_view)
-seen = screenshot(other_view, "panel_other.png")
-assert covered(seen) > 0.02 and abs(seen - first).max() > 100
+other = session.show_isosurface(wavelet, other_view, Isovalues=[220.0], Speculation=0)
+session.look(other_view)
+seen = session.screenshot(other_view, "panel_other.png")
+assert session.covered(seen) > 0.02 and abs(seen - first).max() > 100
 assert isovalues(other_view) == [220.0] and isovalues(view) == [150.0]
-check_same(first, screenshot(view, "panel_first.png"))
-check_converged(display)
-check_converged(other)
+session.check_same(first, session.screenshot(view, "panel_first.png"))
+session.check_converged(display)
+session.check_converged(other)
 simple.Hide(wavelet, other_view)
-assert covered(screenshot(other_view, "panel_hidden.png")) == 0.0
-check_same(first, screenshot(view, "panel_first.png"))
+assert session.covered(session.screenshot(other_view, "panel_hidden.png")) == 0.0
+session.check_same(first, session.screenshot(view, "panel_first.png"))
 
-finish(covered=covered(first))
+session.finish(covered=session.covered(first))

@@ -1,23 +1,16 @@
-"""Run by pvbatch on several processes: the same pictures whatever their number. Every process has a piece of the image, and draws that."""
+"""Run by pvbatch on several processes: the same pictures whatever their number.
+
+Every process has a piece of the image, and draws that.
+"""
 
 import math
 
 import numpy
-from common import (
-    BUILD,
-    OUTPUT,
-    finish,
-    load_plugin,
-    make_view,
-    middle,
-    screenshot,
-    show_isosurface,
-)
+import session
 from paraview import servermanager, simple
 
-assert BUILD.is_dir()
-load_plugin()
-view = make_view([320, 240])
+assert session.BUILD.is_dir()
+view = session.start(size=[320, 240])
 camera = view.GetActiveCamera()
 camera.SetFocalPoint(1, 0, 4)
 camera.SetPosition(68, 47, 73)
@@ -29,8 +22,8 @@ look = {"Isovalues": [150.0], "DiffuseColor": [0.9, 0.85, 0.7]}
 
 
 def shoot(source, name, **properties):
-    display = show_isosurface(source, view, **{**look, **properties})
-    screenshot(view, f"{name}.png")
+    display = session.show_isosurface(source, view, **{**look, **properties})
+    session.screenshot(view, f"{name}.png")
     simple.Hide(source, view)
     return display
 
@@ -40,10 +33,10 @@ display = shoot(wavelet, "plain", CompressionRate=4)
 processes = servermanager.ActiveConnection.GetNumberOfDataPartitions()
 
 compressed = simple.ZFPCompress(Input=wavelet, Rate=4)
-first = list(show_isosurface(compressed, view).Isovalues)
-assert math.isclose(first[0], middle(wavelet.PointData["RTData"].GetRange()), rel_tol=1e-6), (
-    "range of all pieces"
-)
+first = list(session.show_isosurface(compressed, view).Isovalues)
+assert math.isclose(
+    first[0], session.middle(wavelet.PointData["RTData"].GetRange()), rel_tol=1e-6
+), "range of all pieces"
 shoot(compressed, "compressed")
 decompressed = simple.ZFPDecompress(Input=compressed)
 shoot(decompressed, "decompressed", CompressionRate=16)
@@ -53,10 +46,10 @@ shoot(cells, "cells", CompressionRate=6)
 shoot(simple.ZFPCompress(Input=cells, Rate=6), "cells-compressed")
 
 for name in ("file-compressed", "file-plain"):
-    shoot(simple.OpenDataFile(str(OUTPUT.parent / f"{name}.vti")), name)
+    shoot(simple.OpenDataFile(str(session.OUTPUT.parent / f"{name}.vti")), name)
 
 # a file that one process reads
-zfp = simple.OpenDataFile(str(OUTPUT.parent / "file.zfp"))
+zfp = simple.OpenDataFile(str(session.OUTPUT.parent / "file.zfp"))
 zfp.DataOrigin = [-22, -20, -18]
 shoot(zfp, "file-zfp")
 simple.ZFPDecompress(Input=zfp).UpdatePipeline()  # nothing to do for the others
@@ -69,7 +62,8 @@ information.Set(self.GetExecutive().WHOLE_EXTENT(), {EXTENT}, 6)
 information.Set(self.CAN_HANDLE_PIECE_REQUEST(), 1)
 """
 pieces.Script = f"""
-from vtkmodules.vtkCommonExecutionModel import vtkExtentTranslator, vtkStreamingDemandDrivenPipeline as pipeline
+from vtkmodules.vtkCommonExecutionModel import vtkExtentTranslator
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as pipeline
 from vtkmodules.util.numpy_support import numpy_to_vtk
 import numpy
 information = self.GetOutputInformation(0)
@@ -82,7 +76,8 @@ translator.PieceToExtent()
 extent = translator.GetExtent()
 image = self.GetImageDataOutput()
 image.SetExtent(extent)
-z, y, x = numpy.meshgrid(*[numpy.arange(extent[a], extent[a + 1] + 1.0) for a in (4, 2, 0)], indexing="ij")
+axes = [numpy.arange(extent[a], extent[a + 1] + 1.0) for a in (4, 2, 0)]
+z, y, x = numpy.meshgrid(*axes, indexing="ij")
 values = 150 + 60 * (numpy.sin(0.3 * x) * numpy.cos(0.4 * y) + numpy.sin(0.2 * z + 0.1 * x))
 array = numpy_to_vtk(values.ravel(), deep=1)
 array.SetName("values")
@@ -99,7 +94,7 @@ contour = simple.ZFPContour(Input=compressed, Isosurfaces=[150.0])
 shown = simple.Show(contour, view)
 shown.SetRepresentationType("Surface")
 simple.ColorBy(shown, None)
-screenshot(view, "contour.png")
+session.screenshot(view, "contour.png")
 areas = simple.IntegrateVariables(Input=contour)
 areas.UpdatePipeline()
 area = areas.CellData["Area"].GetRange()[0]
@@ -112,4 +107,4 @@ shown.DiffuseColor = [0.3, 0.5, 0.9]
 shoot(compressed, "among-meshes", Opacity=1.0)
 shoot(compressed, "translucent-among-meshes", Opacity=0.4)
 
-finish(processes=int(numpy.asarray(processes)), area=area)
+session.finish(processes=int(numpy.asarray(processes)), area=area)

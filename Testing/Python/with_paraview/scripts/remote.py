@@ -1,37 +1,25 @@
-"""A client and a server of two processes: the server renders, the client shows the picture and the figures of all that draw."""
+"""A client and a server of two processes: the server renders, the client shows the picture and the
+figures of all that draw."""
 
 import os
 import socket
 import subprocess
 
-from common import (
-    BUILD,
-    check_close,
-    check_converged,
-    check_same,
-    covered,
-    finish,
-    load_plugin,
-    look,
-    make_view,
-    make_wavelet,
-    screenshot,
-    show_isosurface,
-)
+import session
 from paraview import servermanager, simple
 
-assert BUILD.is_dir()
+assert session.BUILD.is_dir()
 PROCESSES = 2
 LOOK = {"Isovalues": [150.0], "DiffuseColor": [0.9, 0.85, 0.7]}
 
 
 def show_wavelet(name):
     """The same scene wherever it is rendered: its picture, its figures, and what shows it."""
-    view = make_view()
-    wavelet = make_wavelet(60)
-    display = show_isosurface(wavelet, view, **LOOK)
-    look(view)
-    return screenshot(view, name), check_converged(display), view, wavelet, display
+    view = session.make_view()
+    wavelet = session.make_wavelet(60)
+    display = session.show_isosurface(wavelet, view, **LOOK)
+    session.look(view)
+    return session.screenshot(view, name), session.check_converged(display), view, wavelet, display
 
 
 def free_port():
@@ -41,7 +29,10 @@ def free_port():
 
 
 def start_server(port):
-    """Start the server's processes. MPI has this script for one that it started, which they must not inherit."""
+    """Start the server's processes.
+
+    MPI has this script for one that it started, which they must not inherit.
+    """
     environment = {
         k: v
         for k, v in os.environ.items()
@@ -58,19 +49,19 @@ def start_server(port):
     return subprocess.Popen(command, env=environment)
 
 
-load_plugin()
+session.load_plugin()
 here, info_here, *_ = show_wavelet("remote_here.png")
 assert info_here["processes"] == 1, info_here
-assert covered(here) > 0.1
+assert session.covered(here) > 0.1
 
 port = free_port()
 server = start_server(port)
 try:
     simple.Connect("localhost", port)  # tries for a minute
-    load_plugin(remote=True)
+    session.load_plugin(remote=True)
     there, info, view, wavelet, display = show_wavelet("remote_there.png")
     assert servermanager.ActiveConnection.GetNumberOfDataPartitions() == PROCESSES
-    check_same(here, there, tolerance=2)
+    session.check_same(here, there, tolerance=2)
 
     # both processes draw, and each has its part of the volume
     assert info["processes"] == PROCESSES, info
@@ -85,16 +76,16 @@ try:
         for name in ("NumberOfPasses", "CompletedFraction", "BudgetBytes")
     }
     assert figures["NumberOfPasses"] > 1 and figures["CompletedFraction"] == 1.0, figures
-    check_close(figures["BudgetBytes"], PROCESSES * 3 * 2**20, "budget of two processes")
+    session.check_close(figures["BudgetBytes"], PROCESSES * 3 * 2**20, "budget of two processes")
 
     # a compressed volume of the server's
     compressed = simple.ZFPCompress(Input=wavelet, Rate=display.CompressionRate)
     simple.Hide(wavelet, view)
-    packed = show_isosurface(compressed, view, **LOOK)
-    check_same(there, screenshot(view, "remote_compressed.png"))
-    assert check_converged(packed)["processes"] == PROCESSES
+    packed = session.show_isosurface(compressed, view, **LOOK)
+    session.check_same(there, session.screenshot(view, "remote_compressed.png"))
+    assert session.check_converged(packed)["processes"] == PROCESSES
 finally:
     server.terminate()
     server.wait()
 
-finish(here=info_here, there=info)
+session.finish(here=info_here, there=info)

@@ -1,24 +1,11 @@
-"""A compressed volume, which has no arrays, as progressive isosurface; and the filters that make and undo it."""
+"""A compressed volume, which has no arrays, as progressive isosurface; and the filters that make
+and undo it."""
 
-from common import (
-    check_close,
-    check_converged,
-    check_same,
-    covered,
-    finish,
-    load_plugin,
-    look,
-    make_view,
-    make_wavelet,
-    middle,
-    screenshot,
-    show_isosurface,
-)
+import session
 from paraview import servermanager, simple
 
-load_plugin()
-view = make_view()
-wavelet = make_wavelet()
+view = session.start()
+wavelet = session.make_wavelet()
 wavelet.UpdatePipeline()
 compressed = simple.ZFPCompress(Input=wavelet, Rate=12)
 assert list(compressed.InputArray) == ["POINTS", "RTData"], list(compressed.InputArray)
@@ -28,23 +15,23 @@ compressed.SMProxy.UpdatePropertyInformation()
 assert servermanager.vtkSMPropertyHelper(compressed.SMProxy, "ActualRate").GetAsDouble() == 12.0
 
 # the isovalue starts in the middle of the compressed volume's range
-display = show_isosurface(compressed, view)
+display = session.show_isosurface(compressed, view)
 values = wavelet.PointData["RTData"].GetRange()
-check_close(display.Isovalues[0], middle(values), "isovalue at first")
+session.check_close(display.Isovalues[0], session.middle(values), "isovalue at first")
 
-look(view)
+session.look(view)
 display.DiffuseColor = [0.9, 0.85, 0.7]
 display.Isovalues = [150.0]
-shown = screenshot(view, "compressed.png")
-info = check_converged(display)
-assert 0.1 < covered(shown) < 0.9, covered(shown)
+shown = session.screenshot(view, "compressed.png")
+info = session.check_converged(display)
+assert 0.1 < session.covered(shown) < 0.9, session.covered(shown)
 
 # the plain image compressed to the same rate looks the same
 simple.Hide(compressed, view)
-plain = show_isosurface(
+plain = session.show_isosurface(
     wavelet, view, Isovalues=[150.0], CompressionRate=12.0, DiffuseColor=[0.9, 0.85, 0.7]
 )
-check_same(shown, screenshot(view, "compressed_plain.png"))
+session.check_same(shown, session.screenshot(view, "compressed_plain.png"))
 simple.Hide(wavelet, view)
 
 # decompressed: the original to within what 12 bits per voxel lose
@@ -57,7 +44,7 @@ assert abs(restored[0] - values[0]) < 1 and abs(restored[1] - values[1]) < 1, (r
 simple.Show(compressed, view)
 wavelet.Maximum = 400.0
 compressed.UpdatePipeline()
-assert covered(screenshot(view, "compressed_changed.png")) > 0
-check_converged(display)
+assert session.covered(session.screenshot(view, "compressed_changed.png")) > 0
+session.check_converged(display)
 
-finish(info=info, covered=covered(shown))
+session.finish(info=info, covered=session.covered(shown))

@@ -1,26 +1,16 @@
-"""Save a state with an isosurface of a plain image and of a compressed volume, and what it looks like."""
+"""Save a state with an isosurface of a plain image and of a compressed volume, and what it looks
+like."""
 
-from common import (
-    OUTPUT,
-    covered,
-    finish,
-    load_plugin,
-    look,
-    make_view,
-    make_wavelet,
-    screenshot,
-    show_isosurface,
-)
+import session
 from paraview import simple
 
-load_plugin()
-view = make_view()
-wavelet = make_wavelet()
-show_isosurface(
+view = session.start()
+wavelet = session.make_wavelet()
+session.show_isosurface(
     wavelet, view, Isovalues=[130.0], DiffuseColor=[0.3, 0.6, 0.9], CompressionRate=16.0
 )
 compressed = simple.ZFPCompress(Input=wavelet, Rate=6)
-show_isosurface(
+session.show_isosurface(
     compressed,
     view,
     Isovalues=[220.0, 240.0],
@@ -28,8 +18,8 @@ show_isosurface(
     Speculation=0,
     Position=[10.0, 0.0, 0.0],
 )
-look(view)
-shown = screenshot(view, "state_saved.png")
-simple.SaveState(str(OUTPUT / "state.pvsm"))
+session.look(view)
+shown = session.screenshot(view, "state_saved.png")
+simple.SaveState(str(session.OUTPUT / "state.pvsm"))
 
-finish(covered=covered(shown))
+session.finish(covered=session.covered(shown))

@@ -1,53 +1,41 @@
 """zfp's own files and VTI files of compressed volumes through ParaView's readers and writers."""
 
-from common import (
-    OUTPUT,
-    check_same,
-    covered,
-    finish,
-    load_plugin,
-    look,
-    make_view,
-    make_wavelet,
-    screenshot,
-    show_isosurface,
-)
+import session
 from paraview import simple
 
-load_plugin()
-view = make_view()
-compressed = simple.ZFPCompress(Input=make_wavelet(), Rate=8)
+view = session.start()
+compressed = simple.ZFPCompress(Input=session.make_wavelet(), Rate=8)
 look_at = dict(Isovalues=[150.0], DiffuseColor=[0.9, 0.85, 0.7])
-show_isosurface(compressed, view, **look_at)
-look(view)
-direct = screenshot(view, "files_direct.png")
+session.show_isosurface(compressed, view, **look_at)
+session.look(view)
+direct = session.screenshot(view, "files_direct.png")
 simple.Hide(compressed, view)
 
 # VTI keeps everything; in line, as Debian's ParaView can no longer read its own appended data
-path = str(OUTPUT / "compressed.vti")
+path = str(session.OUTPUT / "compressed.vti")
 simple.SaveData(path, compressed, DataMode="Binary")
 vti = simple.OpenDataFile(path)
-show_isosurface(vti, view, **look_at)
-check_same(direct, screenshot(view, "files_vti.png"))
+session.show_isosurface(vti, view, **look_at)
+session.check_same(direct, session.screenshot(view, "files_vti.png"))
 simple.Hide(vti, view)
 
 # zfp's file loses the geometry: spacing is 1 here anyway, the origin is given again
-path = str(OUTPUT / "compressed.zfp")
+path = str(session.OUTPUT / "compressed.zfp")
 simple.SaveData(path, compressed)
 zfp = simple.OpenDataFile(path)
 assert zfp.GetXMLName() == "ZFPReader", zfp.GetXMLName()
 zfp.DataOrigin = [-24.0, -24.0, -24.0]
-show_isosurface(zfp, view, **look_at)
-check_same(direct, screenshot(view, "files_zfp.png"))
+session.show_isosurface(zfp, view, **look_at)
+session.check_same(direct, session.screenshot(view, "files_zfp.png"))
 simple.Hide(zfp, view)
 
 # without header the reader must be told
-path = str(OUTPUT / "headerless.zfp")
+path = str(session.OUTPUT / "headerless.zfp")
 simple.SaveData(path, compressed, WriteHeader=0)
 bare = simple.ZFPReader(
     FileName=path, DataDimensions=[49, 49, 49], Rate=8, DataOrigin=[-24.0, -24.0, -24.0]
 )
-show_isosurface(bare, view, **look_at)
-check_same(direct, screenshot(view, "files_headerless.png"))
+session.show_isosurface(bare, view, **look_at)
+session.check_same(direct, session.screenshot(view, "files_headerless.png"))
 
-finish(covered=covered(direct))
+session.finish(covered=session.covered(direct))

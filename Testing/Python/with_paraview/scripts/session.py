@@ -1,6 +1,11 @@
-"""What the ParaView scripts share. Every script runs as `pvpython SCRIPT BUILD OUTPUT`: BUILD is the build directory that holds
-the plugin, OUTPUT the folder for images and files. A script fails with an exception; its last line is one JSON object."""
+"""A session of ParaView with the plugin: what the scripts here share.
 
+Every script runs as `pvpython SCRIPT BUILD OUTPUT`: BUILD is the build directory that holds the
+plugin, OUTPUT the folder for images and files. A script fails with an exception; its last line is
+one JSON object.
+"""
+
+import contextlib
 import json
 import math
 import pathlib
@@ -9,6 +14,7 @@ import sys
 import numpy
 from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 from vtkmodules.vtkIOImage import vtkPNGReader
 
 BUILD = pathlib.Path(sys.argv[1])
@@ -17,8 +23,14 @@ PROGRESSIVE_ISOSURFACE = "Progressive Isosurface"
 SIZE = [320, 240]
 
 
+def start(size=SIZE):
+    """Load the plugin and return a view to draw in."""
+    load_plugin()
+    return make_view(size)
+
+
 def load_plugin(remote=False):
-    """Load the plugin of the build directory, and into the server; its filters are then found in `paraview.simple`."""
+    """Load the plugin, with `remote` into the server too; its filters then are in `simple`."""
     found = sorted(BUILD.glob("lib*/**/plugins/ProgIso/ProgIso.so"))
     if len(found) != 1:
         raise FileNotFoundError(f"one ProgIso.so expected under {BUILD}, found {len(found)}")
@@ -28,12 +40,13 @@ def load_plugin(remote=False):
 
 
 def make_view(size=SIZE):
-    """A render view of fixed size, with a plain background, no decoration and no blending between neighbouring pixels."""
+    """Return a view of fixed size, plain in background, undecorated, neighbouring pixels not
+    blended."""
     return undecorate(simple.CreateView("RenderView"), size)
 
 
 def undecorate(view, size=SIZE):
-    """Make a view what `make_view` promises."""
+    """Make a view such as `make_view` returns; return it."""
     view.ViewSize = list(size)
     view.OrientationAxesVisibility = 0
     view.UseFXAA = 0  # a pixel's colour is then its own
@@ -43,12 +56,12 @@ def undecorate(view, size=SIZE):
 
 
 def make_wavelet(half=24):
-    """ParaView's own test image with 2 * half + 1 samples per axis."""
+    """Make ParaView's own test image, with 2 * half + 1 samples per axis."""
     return simple.Wavelet(WholeExtent=[-half, half] * 3)
 
 
 def show_isosurface(source, view, **properties):
-    """Show `source` as progressive isosurface."""
+    """Show `source` as a progressive isosurface; return its display."""
     display = simple.Show(source, view)
     display.SetRepresentationType(PROGRESSIVE_ISOSURFACE)
     for name, value in properties.items():
@@ -68,7 +81,7 @@ def look(view, azimuth=30, elevation=20):
 
 
 def information(display):
-    """The representation's information properties."""
+    """Return the representation's information properties."""
     display.SMProxy.UpdatePropertyInformation()
     names = {
         "passes": "NumberOfPasses",
@@ -87,7 +100,7 @@ def information(display):
 
 
 def check_converged(display):
-    """The information of a complete image; fails when it is not complete or a figure is missing."""
+    """Return the figures of a complete image; fail if it is not complete or a figure is missing."""
     info = information(display)
     assert info["completed"] == 1.0, info
     assert info["passes"] >= 1 and info["total_ms"] > 0, info
@@ -104,8 +117,19 @@ def screenshot(view, name):
     return read_png(path)
 
 
+@contextlib.contextmanager
+def messages():
+    """Collect what VTK reports meanwhile; yield the window whose `GetOutput` has it."""
+    usual, listener = vtkOutputWindow.GetInstance(), vtkStringOutputWindow()
+    vtkOutputWindow.SetInstance(listener)
+    try:
+        yield listener
+    finally:
+        vtkOutputWindow.SetInstance(usual)
+
+
 def read_png(path):
-    """Pixels of a PNG file, (height, width, 3), row 0 at the bottom."""
+    """Return the pixels of a PNG file, (height, width, 3), row 0 at the bottom."""
     reader = vtkPNGReader()
     reader.SetFileName(str(path))
     reader.Update()
@@ -116,12 +140,13 @@ def read_png(path):
 
 
 def covered(pixels):
-    """Fraction of pixels that differ from the background, which the lower left corner shows."""
+    """Return the share of pixels that differ from the background, which the lower left corner
+    shows."""
     return float((abs(pixels - pixels[0, 0]).max(axis=2) > 8).mean())
 
 
 def check_same(first, second, tolerance=0):
-    """Two images agree to within `tolerance` grey levels in every pixel."""
+    """Check that two images agree to within `tolerance` grey levels in every pixel."""
     difference = int(abs(first - second).max())
     assert difference <= tolerance, (
         f"images differ by {difference} grey levels, {tolerance} allowed"
@@ -129,14 +154,14 @@ def check_same(first, second, tolerance=0):
 
 
 def check_close(actual, expected, what):
-    """Two numbers agree to single precision."""
+    """Check that two numbers agree to single precision."""
     assert math.isclose(actual, expected, rel_tol=1e-6, abs_tol=1e-6), (
         f"{what}: {actual} in place of {expected}"
     )
 
 
 def middle(values):
-    """Middle of a range."""
+    """Return the middle of a range."""
     return 0.5 * (values[0] + values[1])
 
 
