@@ -1,8 +1,11 @@
-"""On a machine with a GPU: fill its memory, render, free it, render again. Prints JSON with a verdict, exits with 1 if bad.
+"""On a machine with a GPU: fill its memory, render, free it, render again.
 
-Run it with a Python that has progiso: ``.venv/bin/python Testing/gpu_faults.py``, or ``progiso-bundle/run Testing/gpu_faults.py``.
-Where the `python3` on the path has torch with CUDA that holds the memory (as another program would), else textures do. With
-its memory full the GPU may still serve an image, from the host's; what must not happen is a wrong image, a crash, or no good
+Prints JSON with a verdict, exits with 1 if bad.
+
+Run it with a Python that has progiso: ``.venv/bin/python Testing/gpu_faults.py``, or
+``progiso-bundle/run Testing/gpu_faults.py``. Where the `python3` on the path has torch with CUDA
+that holds the memory (as another program would), else textures do. With its memory full the GPU may
+still serve an image, from the host's; what must not happen is a wrong image, a crash, or no good
 image afterwards.
 """
 
@@ -56,7 +59,8 @@ def hold_by_torch():
 
 
 def hold_by_textures(window, most):
-    """Fill the memory with textures of a GiB, as long as they can be made, but for `most` at most."""
+    """Fill the memory with textures of a GiB, as long as they can be made, but for `most` at most.
+    """
     textures = []
     while len(textures) < most:
         texture = vtkTextureObject()

@@ -5,12 +5,14 @@ import os
 import pytest
 from hypothesis import HealthCheck, settings
 
-# Tests render without a display unless they start one themselves; a caller may ask for another window, as one on a GPU does.
+# Tests render without a display unless they start one themselves; a caller may ask for another
+# window, as one on a GPU does.
 if not os.environ.get("DISPLAY"):
     os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkOSOpenGLRenderWindow")
 os.environ.setdefault("PROGISO_GL_DEBUG", "1")
 
-# Property-based tests take the same examples every time, unless pytest is called with `--hypothesis-profile long`.
+# Property-based tests take the same examples every time, unless pytest is called with
+# `--hypothesis-profile long`.
 settings.register_profile(
     "progiso",
     max_examples=25,
@@ -35,7 +37,8 @@ def pytest_addoption(parser):
 
 @pytest.fixture(scope="session")
 def lacking():
-    """Skip a test for want of something, or fail it in continuous integration, where nothing may be wanting."""
+    """Skip a test for want of something, or fail it in continuous integration, where nothing may be
+    wanting."""
 
     def missing(reason):
         (pytest.fail if os.environ.get("CI") else pytest.skip)(reason)

@@ -60,7 +60,8 @@ def use_command_line(folder):
         ["info", folder / "volume.vti", "--json"],
         ["decompress", folder / "volume.zfp", folder / "plain.vti"],
         ["decompress", folder / "volume.zfp", folder / "plain.mha"],
-        ["render", folder / "volume.zfp", "--isovalue", 0, "--size", "64x48", "--output", folder / "image.png",
+        ["render", folder / "volume.zfp", "--isovalue", 0, "--size", "64x48",
+         "--output", folder / "image.png",
          "--depth", folder / "depth.npy", "--stats", folder / "statistics.json"],
         ["data"],
     ):  # fmt: skip

@@ -225,7 +225,10 @@ def test_other_formats(folder, suffix):
         writer.SetFileName(str(folder / "volume.vtk"))
         assert writer.Write()
     else:
-        header = "NRRD0004\ntype: float\ndimension: 3\nsizes: 12 12 12\nspacings: 1 0.5 2\naxis mins: 4 5 6\nencoding: raw\nendian: little\n\n"
+        header = (
+            "NRRD0004\ntype: float\ndimension: 3\nsizes: 12 12 12\nspacings: 1 0.5 2\n"
+            "axis mins: 4 5 6\nencoding: raw\nendian: little\n\n"
+        )
         (folder / "volume.nrrd").write_bytes(header.encode() + values.tobytes())
     about = json.loads(call(folder, "info", f"volume{suffix}", "--json"))
     assert about["dimensions"] == [12, 12, 12]
@@ -287,7 +290,7 @@ def test_errors_are_one_line(folder, case):
     assert not (folder / "x.vti").exists()
 
 
-# --- data --------------------------------------------------------------------------------------------------------------------
+# --- data -----------------------------------------------------------------------------------------
 
 
 def gyroid(n, k):

@@ -61,7 +61,8 @@ def test_finer_takes_more():
 
 @pytest.mark.parametrize("depth", [4, 13, 32, 33, 47])
 def test_some_slices_at_a_time(depth, monkeypatch):
-    """However many, also where a single one is left over: the rate of the volume in one piece, or of a neighbour that fits."""
+    """However many, also where a single one is left over: the rate of the volume in one piece, or
+    of a neighbour that fits."""
     values = (
         noise((depth, 11, 14), depth) * np.linspace(0.1, 3, depth, dtype=np.float32)[:, None, None]
     )
@@ -116,7 +117,7 @@ def test_hidden_samples_do_not_count(ghosts):
             progiso.least_rate(make_image(values), 0.01)
 
 
-# --- errors ------------------------------------------------------------------------------------------------------------------
+# --- errors ---------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("tolerance", [0, -1, float("nan"), float("inf"), "much", None])
@@ -156,7 +157,7 @@ def test_errors_name_what_is_wrong(image, options, error, message):
         progiso.least_rate(image, 0.1, **options)
 
 
-# --- the command line --------------------------------------------------------------------------------------------------------
+# --- the command line -----------------------------------------------------------------------------
 
 
 def test_command_line(tmp_path):

@@ -1,4 +1,4 @@
-"""Volumes computed and compressed a few slices at a time are those computed and compressed whole."""
+"""A volume computed and compressed a few slices at a time is that computed and compressed whole."""
 
 import os
 import subprocess
@@ -113,7 +113,7 @@ def test_errors_of_a_function_come_through():
         progiso.compress_slabs(lambda z: np.full((4, 4), 1 / (z - 6)), (4, 4, 8))
 
 
-# --- generators ----------------------------------------------------------------------------------------------------------------
+# --- generators -----------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", GENERATORS)
@@ -201,7 +201,8 @@ print(peak() - before)
 
 
 def test_memory_is_bounded_by_slabs(tmp_path):
-    """320 MiB of samples and 10 MiB of stream, made in less than a third of that; about 52 MiB are usual."""
+    """320 MiB of samples and 10 MiB of stream, made in less than a third of that; about 52 MiB are
+    usual."""
     done = subprocess.run(
         [sys.executable, "-c", MEASURED, tmp_path], capture_output=True, text=True, check=True
     )

@@ -1,5 +1,5 @@
-"""Streams in units of their own, where float32 cannot hold the samples: who reads them reads the samples (see also
-test_filters.py and the rows of test_verify.py)."""
+"""Streams in units of their own, where float32 cannot hold the samples: who reads them reads the
+samples (see also test_filters.py and the rows of test_verify.py)."""
 
 import numpy as np
 import pytest

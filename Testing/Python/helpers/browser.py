@@ -1,4 +1,5 @@
-"""What a browser that shows a pyvista plotter by trame says to its server, in trame's own protocol, and what it gets to see."""
+"""What a browser that shows a pyvista plotter by trame says to its server, in trame's own protocol,
+and what it gets to see."""
 
 import asyncio
 import io
@@ -13,7 +14,9 @@ from wslink.chunking import UnChunker, generate_chunks
 PICTURE = "viewport.image.push.subscription"
 LARGEST = 2**24  # bytes of a message
 PATIENCE = 20  # seconds; an answer that takes longer has failed
-QUIET = 1  # seconds without a picture after which none is to come: trame sends one that was not encoded in time after half of one
+#: Seconds without a picture after which none is to come: trame sends one that was not encoded in
+#: time after half a second.
+QUIET = 1
 
 
 class Browser:

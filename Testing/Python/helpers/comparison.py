@@ -1,4 +1,5 @@
-"""Scenes that either mapper can draw, ours or VTK's own isosurface mapper, and how their pictures are compared."""
+"""Scenes that either mapper can draw, ours or VTK's own isosurface mapper, and how their pictures
+are compared."""
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -32,7 +33,8 @@ STEP = 0.05
 
 
 def paint(volume, surfaces):
-    """Give a volume isosurfaces ``{isovalue: (red, green, blue, opacity)}``; each colour is flat around its isovalue."""
+    """Give a volume isosurfaces ``{isovalue: (red, green, blue, opacity)}``; each colour is flat
+    around its isovalue."""
     look = volume.GetProperty()
     look.GetIsoSurfaceValues().SetNumberOfContours(len(surfaces))
     values = sorted(surfaces)
@@ -65,7 +67,7 @@ def picture_of(window):
     return pixels[::-1, :, :3].astype(float)
 
 
-class Stage:
+class ComparisonScene:
     """A window for one of the two mappers. The same calls make the same scene for both.
 
     Parameters
@@ -98,7 +100,10 @@ class Stage:
         return self.volumes[0].GetMapper()
 
     def add(self, image, surfaces, matrix=None, renderer=None, **settings):
-        """Add the isosurfaces of a compressed image; `settings` are ours alone. Return the volume."""
+        """Add the isosurfaces of a compressed image; `settings` are ours alone.
+
+        Return the volume.
+        """
         volume = vtkIsosurfaceVolume() if self.ours else vtkVolume()
         volume.SetMapper(self.make_mapper(**settings))
         self.feed(volume.GetMapper(), image)
@@ -111,7 +116,8 @@ class Stage:
         return volume
 
     def add_mesh(self, image, surfaces, matrix=None):
-        """Add the isosurfaces as triangles, which VTK draws by other means than volumes; translucent ones are peeled."""
+        """Add the isosurfaces as triangles, which VTK draws by other means than volumes;
+        translucent ones are peeled."""
         for value, (*color, opacity) in surfaces.items():
             mapper, actor = vtkPolyDataMapper(), vtkActor()
             mapper.SetInputData(progiso.contour(image, value))
@@ -148,7 +154,8 @@ class Stage:
         return mapper
 
     def feed(self, mapper, image):
-        """Give a mapper a compressed image: VTK's gets the decompressed samples, so that both see the same values."""
+        """Give a mapper a compressed image: VTK's gets the decompressed samples, so that both see
+        the same values."""
         mapper.SetInputData(image if self.ours else progiso.decompress(image))
         if not self.ours:
             mapper.SetSampleDistance(STEP * min(np.abs(image.GetSpacing())))
@@ -193,15 +200,16 @@ class Stage:
 
 
 def both(build, **settings):
-    """Build a scene for each of the mappers; return the two stages."""
-    stages = Stage(True, **settings), Stage(False, **settings)
-    for stage in stages:
-        build(stage)
-    return stages
+    """Build a scene for each of the mappers; return the two scenes."""
+    scenes = ComparisonScene(ours=True, **settings), ComparisonScene(ours=False, **settings)
+    for scene in scenes:
+        build(scene)
+    return scenes
 
 
 def far_apart(ours, theirs, beside=None):
-    """Return the share of pixels that differ by more than the levels allowed and the mean difference, of those not `beside`."""
+    """Return the share of pixels that differ by more than the levels allowed and the mean
+    difference, of those not `beside`."""
     difference = np.abs(ours - theirs).max(axis=2)
     if beside is not None:
         difference = difference[~beside]
@@ -221,15 +229,29 @@ def check_like_vtk(ours, theirs, beside=None):
 
 
 def check_scene_like_vtk(build, **settings):
-    """Build a scene for both mappers and compare their pictures; return the stages, and our picture."""
+    """Build a scene for both mappers and compare their pictures; return the scenes, and our
+    picture."""
     ours, theirs = both(build, **settings)
     picture = ours.picture()
     check_like_vtk(picture, theirs.picture())
     return ours, theirs, picture
 
 
-def show(stage, image, surfaces=OPAQUE, view=1, **settings):
+def show(scene, image, surfaces=OPAQUE, view=1, **settings):
     """Add a volume that the camera looks at; return it."""
-    volume = stage.add(image, surfaces, **settings)
-    stage.look_at(image, view)
+    volume = scene.add(image, surfaces, **settings)
+    scene.look_at(image, view)
+    return volume
+
+
+def show_lit(scene, image, surfaces=OPAQUE, specular=0.0, **settings):
+    """Without ambient light: where a light is in the scene VTK's mapper has that of the lights, on
+    no colour of the surface."""
+    volume = show(scene, image, surfaces, **settings)
+    look = volume.GetProperty()
+    look.ShadeOn()
+    look.SetAmbient(0.0)
+    look.SetDiffuse(0.7)
+    look.SetSpecular(specular)
+    look.SetSpecularPower(8)
     return volume

@@ -33,5 +33,6 @@ def check_decoding(window, image):
     assert got.shape == expected.shape
     wrong = np.flatnonzero(got.view(np.uint32) != expected.view(np.uint32))
     assert len(wrong) == 0, (
-        f"{len(wrong)} of {len(got)} samples, first at {wrong[0]}: {got[wrong[0]]!r}, not {expected[wrong[0]]!r}"
+        f"{len(wrong)} of {len(got)} samples, first at {wrong[0]}:"
+        f" {got[wrong[0]]!r}, not {expected[wrong[0]]!r}"
     )

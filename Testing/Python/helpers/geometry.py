@@ -40,7 +40,8 @@ def ball(radius, color=(1, 0.9, 0.3), opacity=1.0, centre=CENTRE):
 
 
 def wall(camera, share, color=(0.1, 0.9, 0.9), opacity=1.0):
-    """A square across the view, at a share of the way from the camera to its focal point, that covers half the picture."""
+    """A square across the view, at a share of the way from the camera to its focal point, that
+    covers half the picture."""
     place, focus = np.array(camera.GetPosition()), np.array(camera.GetFocalPoint())
     forward = focus - place
     right = np.cross(forward, camera.GetViewUp())

@@ -32,7 +32,8 @@ _PROTOTYPES = {
 
 
 def _pointer(name):
-    """The pointer that a function is called through; VTK's OpenGL loader fills it in when a window is made."""
+    """The pointer that a function is called through; VTK's OpenGL loader fills it in when a window
+    is made."""
     (library,) = pathlib.Path(vtkmodules.__file__).parent.glob("libvtkglad*.so")
     return ctypes.c_void_p.in_dll(ctypes.CDLL(str(library)), f"vtk_glad_{name}")
 
@@ -44,7 +45,8 @@ def gl(name):
 
 @contextlib.contextmanager
 def intercepted(name, replacement):
-    """Have `replacement` called, with the function itself first, wherever VTK or the mapper calls an OpenGL function."""
+    """Have `replacement` called, with the function itself first, wherever VTK or the mapper calls
+    an OpenGL function."""
     pointer, original = _pointer(name), gl(name)
     before = pointer.value
     hook = _PROTOTYPES[name](lambda *arguments: replacement(original, *arguments))
@@ -56,7 +58,8 @@ def intercepted(name, replacement):
 
 
 class NoRoom:
-    """Allocations of buffers of some kinds, of which the one with a number fails as the driver lets it."""
+    """Allocations of buffers of some kinds, of which the one with a number fails as the driver lets
+    it."""
 
     def __init__(self, number, targets):
         self.number, self.targets, self.count = number, targets, 0

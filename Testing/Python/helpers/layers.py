@@ -1,4 +1,5 @@
-"""What a translucent picture should be: layers of isosurfaces blended front to back along the caster's rays."""
+"""What a translucent picture should be: layers of isosurfaces blended front to back along the
+caster's rays."""
 
 import numpy as np
 
@@ -37,7 +38,10 @@ def crossings_of(volume, isovalues, camera, size, clip=(0.0, np.inf), cropping=N
 
 
 def blend(crossings, looks, background, size, end=np.inf):
-    """Blend the layers that lie before `end`; `looks` are (red, green, blue, opacity). Return levels [row, column, rgb]."""
+    """Blend the layers that lie before `end`; `looks` are (red, green, blue, opacity).
+
+    Return levels [row, column, rgb].
+    """
     looks = np.asarray(looks, float)
     pixels = size[0] * size[1]
     color, opacity = np.zeros((pixels, 3)), np.zeros(pixels)
@@ -57,8 +61,9 @@ def blend(crossings, looks, background, size, end=np.inf):
 
 
 def capped(volume, isovalues, camera, size, cropping):
-    """Mark the pixels where VTK's mapper shows a surface at the border of a region: it draws one wherever a ray comes back into a
-    region that is drawn on another side than it left the last one, and none where the two make up for each other."""
+    """Mark the pixels where VTK's mapper shows a surface at the border of a region: it draws one
+    wherever a ray comes back into a region that is drawn on another side than it left the last one,
+    and none where the two make up for each other."""
     planes, flags = cropping
     origins, directions = camera.rays(size)
     points, ways = (

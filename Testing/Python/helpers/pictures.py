@@ -35,7 +35,8 @@ def write_png(pixels, path):
 
 
 def check_picture(pixels, name, config, folder):
-    """Hold a picture against its baseline, or store it as such; where it fails it is left in `folder`."""
+    """Hold a picture against its baseline, or store it as such; where it fails it is left in
+    `folder`."""
     path = BASELINES / f"{name}.png"
     if config.getoption("--write-baselines"):
         BASELINES.mkdir(exist_ok=True)
@@ -51,5 +52,6 @@ def check_picture(pixels, name, config, folder):
     if share > tolerances.IMAGE_PIXELS or mean > tolerances.IMAGE_MEAN:
         write_png(pixels, folder / f"{name}.png")
         raise AssertionError(
-            f"{share:.2%} of the pixels differ, {mean:.2f} grey levels on average: see {folder / name}.png, {path}"
+            f"{share:.2%} of the pixels differ, {mean:.2f} grey levels on average:"
+            f" see {folder / name}.png, {path}"
         )

@@ -8,8 +8,8 @@ import sys
 
 from helpers import TESTS
 
-#: Source of a function for programs that measure their own memory. Not resource.getrusage: a process
-#: starts with its parent's peak there, and a large parent's hides its own.
+#: Source of a function for programs that measure their own memory. Not resource.getrusage: a
+#: process starts with its parent's peak there, and a large parent's hides its own.
 PEAK = """
 def peak():
     with open("/proc/self/status") as status:
@@ -39,8 +39,23 @@ def call(folder, *arguments, succeeds=True):
     return done.stdout if succeeds else done.stderr
 
 
+def compress_command(source, target, rate=1):
+    """Return the command that compresses a file."""
+    return [
+        sys.executable,
+        "-m",
+        "progiso",
+        "compress",
+        str(source),
+        str(target),
+        "--rate",
+        str(rate),
+    ]
+
+
 def under_x(*command, python_path=(), timeout=600, cwd=None, **variables):
-    """Run a command in a virtual display of its own, with more environment variables; return its output."""
+    """Run a command in a virtual display of its own, with more environment variables; return its
+    output."""
     assert shutil.which("xvfb-run"), "the tests of the plugin need xvfb-run (Debian: xvfb, xauth)"
     environment = {
         k: v
@@ -50,7 +65,8 @@ def under_x(*command, python_path=(), timeout=600, cwd=None, **variables):
     environment["PYTHONPATH"] = os.pathsep.join(map(str, python_path))
     environment["PROGISO_GL_DEBUG"] = "1"
     environment.update(variables)
-    # -noreset: the server must not restart, and refuse a connection meanwhile, when its only client closes one to open the next
+    # -noreset: the server must not restart, and refuse a connection meanwhile, when its only client
+    # closes one to open the next
     display = ["xvfb-run", "-n", str(next(displays)), "-s", "-screen 0 1280x1024x24 -noreset"]
     done = subprocess.run(
         [*display, *map(str, command)],

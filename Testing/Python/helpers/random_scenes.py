@@ -21,7 +21,8 @@ def random_field(kind, shape, seed):
 
 
 def random_camera(shape, seed):
-    """A camera of an image of this shape at the origin: about it, in it or parallel; every other looks along an axis."""
+    """A camera of an image of this shape at the origin: about it, in it or parallel; every other
+    looks along an axis."""
     rng = np.random.default_rng(seed)
     size = np.array(shape[::-1]) - 1.0
     target = rng.uniform(0.2, 0.8, 3) * size

@@ -128,7 +128,8 @@ class Scene:
 
 
 def least_budget(image, isovalue, camera, size=(160, 120), **settings):
-    """Return the least memory budget that a lit scene can work with, as the error says that one byte is too little."""
+    """Return the least memory budget that a lit scene can work with, as the error says that one
+    byte is too little."""
     scene = Scene(image, isovalue, camera, size, lit=True, MemoryBudget=1, **settings)
     with vtk_messages() as messages:
         scene.window.Render()
@@ -136,7 +137,7 @@ def least_budget(image, isovalue, camera, size=(160, 120), **settings):
 
 
 def orbit(volume, i, n, view_angle=50.0, distance=1.5):
-    """Return the camera of the project's orbit about a caster's volume; see `progiso.orbit_camera`."""
+    """Return the camera that `progiso.orbit_camera` has for a caster's volume."""
     corners = np.array(list(itertools.product(*[(0, s - 1) for s in volume.values.shape[::-1]])))
     world = corners @ volume.index_to_world[:3, :3].T + volume.index_to_world[:3, 3]
     low, high = world.min(axis=0), world.max(axis=0)
@@ -159,7 +160,8 @@ def check_scene(
     volume=None,
     **settings,
 ):
-    """Render a scene of a compressed volume and hold its depth against the caster; return the scene."""
+    """Render a scene of a compressed volume and hold its depth against the caster; return the
+    scene."""
     scene = Scene(image, isovalue, camera, size, user_matrix, **settings)
     got = scene.depth()
     volume = volume or reference_volume(image, user_matrix)
@@ -169,14 +171,16 @@ def check_scene(
 
 
 def check_depth(depth, expected, grazing=tolerances.GRAZING_FRACTION):
-    """Hold a depth image against a `Cast`, see `progiso.measure.agreement`; not too many rays may graze."""
+    """Hold a depth image against a `Cast`, see `progiso.measure.agreement`; not too many rays may
+    graze."""
     assert depth.dtype == np.float32 and depth.shape == expected.depth.shape
     found = compare(depth, expected)
     wrong = found.wrong
     if wrong.any():
         lines = [
             f"  row {r} column {c}: {depth[r, c]:.9g}, expected {expected.depth[r, c]:.9g}"
-            f" ({expected.early[r, c]:.9g} to {expected.late[r, c]:.9g}), off by {found.error[r, c]:.3g} voxels"
+            f" ({expected.early[r, c]:.9g} to {expected.late[r, c]:.9g}),"
+            f" off by {found.error[r, c]:.3g} voxels"
             for r, c in np.argwhere(wrong)[:8]
         ]
         raise AssertionError(
@@ -200,5 +204,6 @@ def check_memory(image, statistics):
     )
     rest = memory["total"] - memory["compressed"] - cache
     assert rest <= bound, (
-        f"{rest} bytes for {blocks} blocks and {np.prod(statistics['size'])} pixels: {memory['buffers']}"
+        f"{rest} bytes for {blocks} blocks and {np.prod(statistics['size'])} pixels:"
+        f" {memory['buffers']}"
     )

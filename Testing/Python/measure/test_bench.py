@@ -1,4 +1,7 @@
-"""The benchmarks: that every set runs and reports, and that they judge rightly. Speed is no test's business."""
+"""The benchmarks: that every set runs and reports, and that they judge rightly.
+
+Speed is no test's business.
+"""
 
 import copy
 import json
@@ -12,24 +15,15 @@ import pytest
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import progiso
-from helpers.images import blobs, make_image, noise
 from helpers.programs import call
 from progiso.bench import goals
-from progiso.bench.explicit import BlockRanges
 from progiso.bench.fields import parse_field
 from progiso.bench.literature import GPU
 from progiso.bench.report import markdown
 from progiso.bench.settings import PEERS, Settings
 from progiso.bench.soak import growth
-from progiso.bench.volume_mapper import VolumeMapper
 from progiso.data import fetch
-from progiso.measure import tolerances
-from progiso.measure.agreement import depth_error
 from progiso.measure.document import load_document, merge
-from progiso.measure.mesh import Mesh, extract
-from progiso.measure.topology import topology
-from progiso.measure.view import opposite, turned
-from progiso.oracle.caster import Camera, Volume, cast
 
 TINY = ("--fields", "gyroid-24-k2-r8", "--size", "64x48", "--positions", 2)
 KINDS = {
@@ -68,12 +62,10 @@ def results(folder):
     return run
 
 
-# --- the command ---------------------------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("name", KINDS)
 def test_sets(results, name):
-    """Each set leaves JSON with its measurements, Markdown with its tables, and the plots that it shows."""
+    """Each set leaves JSON with its measurements, Markdown with its tables, and the plots that it
+    shows."""
     document = json.loads((results(name) / "results.json").read_text())
     assert set(document["measurements"]) == KINDS[name]
     assert document["runs"][0]["set"] == name and document["runs"][0]["complete"]
@@ -112,7 +104,8 @@ def test_protocol_counts(results):
 
 
 def test_moved_bytes(results):
-    """The floor of an image's time: no less than its pixels, its blocks decoded and intersected, once."""
+    """The floor of an image's time: no less than its pixels, its blocks decoded and intersected,
+    once."""
     record = load_document(results("paper") / "results.json")["measurements"]["protocol"][0]
     pixels = 64 * 48 * 32
     assert (
@@ -276,50 +269,6 @@ def test_machines_are_not_mixed(results):
         merge([one, other])
 
 
-# --- judging --------------------------------------------------------------------------------------------------------------------
-
-
-def test_depth_error_of_a_shifted_image():
-    values = blobs((24, 22, 26), 1)
-    volume = Volume.from_geometry(values, spacing=(0.5, 1, 2))
-    result = cast(volume, 0.0, Camera((40, 30, 70), (6, 10, 20), view_angle=45), (80, 60))
-    hit = np.isfinite(result.depth)
-    assert 500 < hit.sum() < hit.size
-    assert set(depth_error(result.depth, result.depth, result.voxels).values()) == {0}
-    shifted = depth_error(result.depth - 0.25 / result.voxels, result.depth, result.voxels)
-    assert (
-        shifted["mean"] == pytest.approx(0.25)
-        and shifted["p99"] == pytest.approx(0.25)
-        and shifted["wrong"] == 0
-    )
-    partial = result.depth.copy()
-    partial[:30] = np.inf
-    assert depth_error(partial, result.depth, result.voxels)["wrong"] == hit[:30].sum() / hit.size
-    everywhere = np.where(hit, result.depth, 1.0)
-    assert depth_error(everywhere, result.depth, result.voxels)["wrong"] == np.mean(~hit)
-    assert depth_error(np.full_like(partial, np.inf), result.depth, result.voxels)["mean"] is None
-
-
-@pytest.mark.parametrize("border", [False, True])
-def test_topology(border):
-    """Two tori and a ball; also where the volume's border cuts the ball."""
-    z, y, x = np.indices((40, 50, 90), dtype=float)
-
-    def torus(at):
-        return 5 - np.hypot(np.hypot(x - at, y - 25.2) - 13, z - 19.7)
-
-    ball = 7 - np.sqrt((x - 20.1) ** 2 + (y - 25.3) ** 2 + (z - (1.5 if border else 20.2)) ** 2)
-    values = np.maximum(np.maximum(torus(20.3), torus(65.6)), ball).astype(np.float32)
-    found = topology(make_image(values), 0.0)
-    assert (found["components"], found["genus"], found["euler"]) == (3, 2, 2)
-    assert topology(make_image(values), 100.0) == {
-        "triangles": 0,
-        "components": 0,
-        "euler": 0,
-        "genus": 0,
-    }
-
-
 def test_rates_tell_what_they_cost(results):
     """Errors fall with the rate; the finest has the surface as it is."""
     record = load_document(results("rates") / "results.json")["measurements"]["rates"][0]
@@ -337,87 +286,8 @@ def test_rates_tell_what_they_cost(results):
     assert points[2]["rms_error"] == pytest.approx(np.sqrt(np.mean(off**2)))
 
 
-@pytest.fixture(scope="module")
-def ramp():
-    """A plane in a volume of flat voxels, and the caster's image of it."""
-    z, y, x = np.indices((20, 24, 28)).astype(np.float32)
-    values = 0.7 * x - 0.4 * y + 0.5 * z
-    image = make_image(values, spacing=(1, 1, 2), origin=(5, -3, 2))
-    camera = progiso.orbit_camera(image, 1, 5)
-    volume = Volume.from_geometry(values, image.GetOrigin(), image.GetSpacing())
-    seen = Camera(camera.position, camera.focal_point, camera.view_up, camera.view_angle)
-    return image, camera, cast(volume, 9.0, seen, (150, 100))
-
-
-def off(view, camera, expected):
-    """Signed depth errors in voxels, where both hit; almost all rays agree on that."""
-    view.render_from(camera)
-    depth = view.depth()
-    view.close()
-    both = np.isfinite(depth) & np.isfinite(expected.depth)
-    assert (
-        both.sum() > 500
-        and np.mean(np.isfinite(depth) != np.isfinite(expected.depth)) < tolerances.IMAGE_PIXELS
-    )
-    return (depth[both] - expected.depth[both]) * expected.voxels[both]
-
-
-def test_depth_of_a_mesh(ramp):
-    image, camera, expected = ramp
-    mesh, _ = extract(image, 9.0)
-    error = off(Mesh(mesh, (150, 100)), camera, expected)
-    assert np.abs(error).max() < tolerances.MESH_DEPTH_VOXELS
-
-
-@pytest.mark.parametrize("distance", [0.1, 0.5])
-def test_depth_of_vtks_mapper(ramp, distance):
-    """It shades at the first sample beyond the surface: up to one sample distance too deep, half of it in the mean."""
-    image, camera, expected = ramp
-    error = off(VolumeMapper(image, 9.0, (150, 100), distance), camera, expected)
-    assert error.min() > -tolerances.TEXTURE_VOXELS
-    assert error.max() < distance + tolerances.TEXTURE_VOXELS
-    assert 0.25 * distance < error.mean() < 0.75 * distance
-
-
-@pytest.mark.parametrize("shape", [(9, 13, 10), (8, 4, 5), (12, 11, 6)])
-def test_blocks_of_explicit_extraction(shape):
-    """Counted cell by cell: a block is held where a cell of it is, active with the blocks of its cells' corners."""
-    values = noise(shape, 4)
-    held, active = set(), set()
-    for cell in np.ndindex(*(n - 1 for n in shape)):
-        corners = values[tuple(slice(c, c + 2) for c in cell)]
-        if corners.min() < 1.5 <= corners.max():
-            held.add(tuple(c // 4 for c in cell))
-    blocks = [-(-n // 4) for n in shape]
-    for block in held:
-        for offset in np.ndindex(2, 2, 2):
-            neighbour = tuple(b + o for b, o in zip(block, offset))
-            if all(n < b for n, b in zip(neighbour, blocks)):
-                active.add(neighbour)
-    counted = BlockRanges(values).count(1.5)
-    # a block's range may hold the isovalue where none of its cells does
-    assert len(held) <= counted["held"] and len(active) <= counted["active"] <= counted[
-        "blocks"
-    ] == np.prod(blocks)
-    ranges = {
-        block: values[tuple(slice(4 * b, 4 * b + 5) for b in block)]
-        for block in np.ndindex(*(-(-(n - 1) // 4) for n in shape))
-    }
-    assert counted["held"] == sum(r.min() < 1.5 <= r.max() for r in ranges.values())
-
-
-def test_cameras_move_as_said():
-    camera = progiso.orbit_camera((0, 4, 0, 2, 0, 3), 4, 5)
-    away = np.subtract(camera.position, camera.focal_point)
-    moved = np.subtract(turned(camera, 2.0).position, camera.focal_point)
-    behind = np.subtract(opposite(camera).position, camera.focal_point)
-    assert np.linalg.norm(moved) == pytest.approx(np.linalg.norm(away))
-    assert moved @ away / (away @ away) == pytest.approx(np.cos(np.radians(2)))
-    assert behind == pytest.approx(-away)
-
-
 def test_goals_are_computed(results):
-    """A figure on the other side of its goal turns the verdict, in the tables and in the summary."""
+    """A figure beyond its goal turns the verdict, in the tables and in the summary."""
     document = load_document(results("paper") / "results.json")
     for records in document["measurements"].values():
         records[0]["others_cores"] = 0.0
@@ -434,7 +304,8 @@ def test_goals_are_computed(results):
 
 
 def test_busy_machines_are_told(results):
-    """Where other processes took the processor no time is judged, met or not; memory is all the same."""
+    """Where other processes took the processor no time is judged, met or not; memory is all the
+    same."""
     document = load_document(results("paper") / "results.json")
     records = [record for records in document["measurements"].values() for record in records]
     assert all(record["others_cores"] is None or record["others_cores"] >= 0 for record in records)

@@ -16,11 +16,13 @@ BENCHMARKS = REPOSITORY / "Testing" / "Benchmarks"
 
 @pytest.fixture
 def bundle(tmp_path):
-    """A bundle whose Python prints its environment and arguments, with a library that every machine has, and one that none has."""
+    """A bundle whose Python prints its environment and arguments, with a library that every machine
+    has, and one that none has."""
     python = tmp_path / "python/bin/python3"
     python.parent.mkdir(parents=True)
     python.write_text(
-        f"#!{sys.executable}\nimport json, os, sys\nprint(json.dumps([dict(os.environ), sys.argv[1:]]))\n"
+        f"#!{sys.executable}\nimport json, os, sys\n"
+        "print(json.dumps([dict(os.environ), sys.argv[1:]]))\n"
     )
     python.chmod(python.stat().st_mode | stat.S_IXUSR)
     for name in ("libc.so.6", "libnobodyhasthis.so.1"):

@@ -1,4 +1,5 @@
-"""The caster against closed forms, against dense sampling, and against VTK's own camera and geometry."""
+"""The caster against closed forms, against dense sampling, and against VTK's own camera and
+geometry."""
 
 import numpy as np
 import pytest
@@ -39,7 +40,8 @@ def plain(values):
     return Volume(np.asarray(values), np.eye(4))
 
 
-HIDDEN_CELLS = {  # along x, of nine; and where the first surface behind x = 0 is seen, and behind x = 4 and 8.5
+#: Along x, of nine; and where the first surface behind x = 0 is seen, and behind x = 4 and 8.5.
+HIDDEN_CELLS = {
     "none": ((), (3.5, 7.5, np.inf)),
     "the first surface's": ((3,), (7.5, 7.5, np.inf)),
     "both surfaces'": ((3, 7), (np.inf, np.inf, np.inf)),
@@ -50,7 +52,8 @@ HIDDEN_CELLS = {  # along x, of nine; and where the first surface behind x = 0 i
 
 @pytest.mark.parametrize("case", HIDDEN_CELLS)
 def test_hidden_cells(case):
-    """There is no surface in them, and none where a ray comes out of them on another side than it went in."""
+    """There is no surface in them, and none where a ray comes out of them on another side than it
+    went in."""
     columns, depths = HIDDEN_CELLS[case]
     x = np.arange(10.0)
     values = np.broadcast_to(2 - np.abs(x - 5.5), (6, 5, 10)).copy()
@@ -215,7 +218,8 @@ def test_geometry_moves_with_the_camera():
 
 
 def test_slack_brackets_what_a_disturbed_field_shows():
-    """Whatever an error within the slack does to the values, the depth stays between early and late."""
+    """Whatever an error within the slack does to the values, the depth stays between early and
+    late."""
     rng = np.random.default_rng(4)
     values = rng.normal(size=(9, 9, 9))
     camera = Camera((25, 14, 19), (4, 4, 4), view_angle=30)

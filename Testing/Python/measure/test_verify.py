@@ -46,7 +46,7 @@ def test_names_are_unique():
     assert 0 < len(cases(quick=True)) <= len(cases()) == len(names)
 
 
-# --- what would fail ---------------------------------------------------------------------------------------------------------
+# --- what would fail ------------------------------------------------------------------------------
 
 
 def measured():
@@ -162,7 +162,8 @@ def test_errors_name_what_is_wrong(arguments, message, capsys):
 
 
 def test_agreement_of_grazing_rays():
-    """Between the first possible and the first certain crossing anything goes; beyond, the distance to them counts."""
+    """Between the first possible and the first certain crossing anything goes; beyond, the distance
+    to them counts."""
     early, late = (
         np.array([[1.0, 1.0, 1.0, 1.0, np.inf]]),
         np.array([[3.0, 3.0, np.inf, np.inf, np.inf]]),
@@ -174,7 +175,8 @@ def test_agreement_of_grazing_rays():
 
 
 def test_rays_through_a_hole_fail(monkeypatch):
-    """A closed field whose skin is taken off after it was checked: the table counts the rays and tells how to repeat the first."""
+    """A closed field whose skin is taken off after it was checked: the table counts the rays and
+    tells how to repeat the first."""
     closed = cracks.compressed_field
 
     def opened(field, rate):

@@ -85,7 +85,8 @@ def test_colour_of_another_array(settings, cells):
 @pytest.mark.parametrize("lit", [False, True])
 @pytest.mark.parametrize("opacity", [1.0, 0.5])
 def test_same_from_a_cache_and_from_port_1(lit, opacity):
-    """An array, a compressed volume; decoded as a whole or block by block, pass by pass: the same bits."""
+    """An array, a compressed volume; decoded as a whole or block by block, pass by pass: the same
+    bits."""
     image = ball()
     right = progiso.compress(image, rate=16, array="right")
     ways = (

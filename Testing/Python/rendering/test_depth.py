@@ -17,7 +17,7 @@ def compressed(values, rate=8, **geometry):
     return progiso.compress(make_image(values, **geometry), rate=rate)
 
 
-# --- fields and cameras ------------------------------------------------------------------------------------------------------
+# --- fields and cameras ---------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("i", range(4))
@@ -41,7 +41,8 @@ def test_white_noise(seed):
     [(2, 2, 2), (2, 9, 33), (5, 5, 5), (4, 4, 4), (8, 12, 16), (9, 13, 17), (3, 70, 6), (65, 2, 3)],
 )
 def test_shapes(shape):
-    """Volumes of one cell, of one block, with partial blocks and partial groups of blocks on any side."""
+    """Volumes of one cell, of one block, with partial blocks and partial groups of blocks on any
+    side."""
     image = compressed(noise(shape, 11), 16)
     volume = reference_volume(image)
     for i in range(2):
@@ -101,7 +102,8 @@ def test_parallel_projection(i):
 @pytest.mark.parametrize("axis", range(3))
 @pytest.mark.parametrize("sign", [-1, 1])
 def test_along_an_axis(axis, sign, parallel_scale):
-    """Rays along an axis, at 12 of 24 pixels a voxel also exactly on planes of voxels, and central rays through corners of cells."""
+    """Rays along an axis, at 12 of 24 pixels a voxel also exactly on planes of voxels, and central
+    rays through corners of cells."""
     image = compressed(blobs((25, 25, 25), 6))
     position = np.full(3, 12.0)
     position[axis] += sign * 50
@@ -115,13 +117,14 @@ def test_rays_in_planes_of_voxels():
     """Parallel rays whose every sample lies in a face, an edge or a corner of cells."""
     image = compressed(marschner_lobb(17), 32)
     volume = reference_volume(image)
-    # Pixels of half a voxel: every other lies on planes of voxels in both directions; up to an eighth on the volume's border, which grazes.
+    # Pixels of half a voxel: every other lies on planes of voxels in both directions; up to an
+    # eighth on the volume's border, which grazes.
     for position, scale in (((8, 8, 60), 8.25), ((48, 8, 48), 8.25), ((48, 48, 48), 12.0)):
         camera = Camera(position, (8, 8, 8), (0, 1, 0), parallel_scale=scale)
         check_scene(image, 0.5, camera, (33, 33), volume=volume, grazing=1 / 8)
 
 
-# --- geometry ----------------------------------------------------------------------------------------------------------------
+# --- geometry -------------------------------------------------------------------------------------
 
 GEOMETRIES = {
     "anisotropic": dict(spacing=(0.5, 3, 1.2)),
@@ -173,12 +176,13 @@ def test_user_matrix(kind, parallel):
     check_scene(image, 0.1, camera, user_matrix=matrix, volume=volume)
 
 
-# --- values ------------------------------------------------------------------------------------------------------------------
+# --- values ---------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("scale", [1e-28, 1e-20, 1e-3, 1e4, 1e20, 1e30, 1e37])
 def test_scales_of_values(scale):
-    """From the least that zfp takes (see test_filters.py) to the most that float32 holds: no square overflows or vanishes."""
+    """From the least that zfp takes (see test_filters.py) to the most that float32 holds: no square
+    overflows or vanishes."""
     image = compressed(blobs((24, 24, 24), 9) * np.float32(scale), 12)
     check_scene(image, 0.1 * scale, orbit(reference_volume(image), 1, 3))
 
@@ -198,7 +202,8 @@ def test_isovalue_of_many_digits():
 
 @pytest.mark.parametrize("isovalue", [0.0, 1.0, 2.0])
 def test_isovalue_equal_to_voxels(isovalue):
-    """A field of three whole values has plateaus and edges exactly at the isovalue; where it is hit must stay possible."""
+    """A field of three whole values has plateaus and edges exactly at the isovalue; where it is hit
+    must stay possible."""
     image = compressed(np.clip(np.round(blobs((24, 20, 28), 10) + 1), 0, 2).astype(np.float32), 32)
     volume = reference_volume(image)
     assert set(np.unique(volume.values)) == {0, 1, 2}
@@ -206,7 +211,8 @@ def test_isovalue_equal_to_voxels(isovalue):
     scene = Scene(image, isovalue, camera)
     got, expected = scene.depth(), cast(volume, isovalue, camera, (160, 120), tolerances.SLACK)
     check_depth(got, expected, grazing=1.0)
-    # Inside is "at least the isovalue", and whole numbers are exact: nothing is below the least, and plateaus are hit at their edges.
+    # Inside is "at least the isovalue", and whole numbers are exact: nothing is below the least,
+    # and plateaus are hit at their edges.
     assert np.isfinite(got).any() == (isovalue > 0)
     assert np.mean(np.isfinite(got) != np.isfinite(expected.depth)) < 0.01
 
@@ -235,7 +241,7 @@ def test_empty_blocks():
     check_scene(image, 0.4, orbit(reference_volume(image), 1, 4))
 
 
-# --- plain input -------------------------------------------------------------------------------------------------------------
+# --- plain input ----------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("rate", [4, 8])
@@ -250,7 +256,7 @@ def test_plain_image_is_compressed_at_the_rate(rate):
     )
 
 
-# --- real scans --------------------------------------------------------------------------------------------------------------
+# --- real scans -----------------------------------------------------------------------------------
 
 SCANS = {"ct-cranium": 226.0, "mri-brain": 45.0}
 

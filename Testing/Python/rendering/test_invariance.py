@@ -42,7 +42,8 @@ def same(case, **settings):
     depth = scene.depth()
     different = np.argwhere(depth.view(np.uint32) != expected.view(np.uint32))
     assert len(different) == 0, (
-        f"{len(different)} pixels, first {different[0]}: {depth[tuple(different[0])]}, not {expected[tuple(different[0])]}"
+        f"{len(different)} pixels, first {different[0]}:"
+        f" {depth[tuple(different[0])]}, not {expected[tuple(different[0])]}"
     )
     assert scene.picture().tobytes() == picture.tobytes()
     return scene.statistics()
@@ -62,7 +63,8 @@ def test_speculation(case, limit):
 @pytest.mark.parametrize("speculation", [1, 64])
 @pytest.mark.parametrize("share", [0, 0.01, 0.03, 0.1, 0.3, 0.7, 1, 2])
 def test_memory_budget(case, share, speculation):
-    """From the least budget that can work to one that has room for the whole volume decoded: same image, never over budget."""
+    """From the least budget that can work to one that has room for the whole volume decoded: same
+    image, never over budget."""
     image, isovalue, camera, _, _ = case
     whole = same(case)
     least = least_budget(image, isovalue, camera)
@@ -218,7 +220,8 @@ def test_an_emptied_cache_decodes_again(case, settings):
 
 
 def test_cache_grows_and_shrinks_with_the_scene():
-    """A complex view makes the cache grow; after some views that need little it is small again, and the images stay right."""
+    """A complex view makes the cache grow; after some views that need little it is small again, and
+    the images stay right."""
     values = noise((180, 180, 180), 3)
     image = progiso.compress(make_image(values), rate=4)
     camera = orbit(reference_volume(image), 1, 4)

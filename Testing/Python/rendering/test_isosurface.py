@@ -1,4 +1,5 @@
-"""`make_isosurface` and `render`: several isovalues with their colours and opacities, and what is wrong with others."""
+"""`make_isosurface` and `render`: several isovalues with their colours and opacities, and what is
+wrong with others."""
 
 import numpy as np
 import pytest
@@ -41,10 +42,9 @@ def colours(prop, *radii):
 
 
 def test_each_isovalue_has_its_colour_and_opacity(image):
-    prop = progiso.make_isosurface(
-        image, [12, 6], color=[RED, GREEN], shade=False, opacity=[0.25, 1]
-    )
-    # from outside in: beside both, through the outer sphere's front and back, on the inner through the outer
+    prop = progiso.make_isosurface(image, [12, 6], [RED, GREEN], shade=False, opacity=[0.25, 1])
+    # from outside in: beside both, through the outer sphere's front and back, on the inner through
+    # the outer
     through = 0.25 + 0.75 * 0.25
     assert colours(prop, 14, 9, 0) == [(0, 0, 0), (through, 0, 0), (0.25, 0.75, 0)]
 

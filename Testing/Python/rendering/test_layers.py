@@ -1,10 +1,11 @@
-"""Several and translucent isosurfaces against the double-precision caster; how the work is divided shows in no bit of them."""
+"""Several and translucent isosurfaces against the double-precision caster; how the work is divided
+shows in no bit of them."""
 
 import numpy as np
 import pytest
 
 import progiso
-from helpers.comparison import BACKGROUND, NESTED, SIZE, Stage, show
+from helpers.comparison import BACKGROUND, NESTED, SIZE, ComparisonScene, show
 from helpers.geometry import PLANES, REGIONS, ball
 from helpers.images import blobs, make_image, noise, reference_volume
 from helpers.layers import blend, crossings_of
@@ -37,14 +38,14 @@ def field(request):
     return progiso.compress(make_image(values()), rate=16), dict(sorted(surfaces.items()))
 
 
-def expected(stage, image, surfaces, end=np.inf, background=BACKGROUND, cropping=None):
-    """What the caster makes of a stage's scene, unlit."""
+def expected(scene, image, surfaces, end=np.inf, background=BACKGROUND, cropping=None):
+    """What the caster makes of a scene, unlit."""
     crossings = crossings_of(
         reference_volume(image),
         list(surfaces),
-        Camera.from_vtk(stage.camera),
+        Camera.from_vtk(scene.camera),
         SIZE,
-        stage.camera.GetClippingRange(),
+        scene.camera.GetClippingRange(),
         cropping,
     )
     return crossings, blend(crossings, list(surfaces.values()), background, SIZE, end)
@@ -60,15 +61,15 @@ def check_layers(picture, model):
 @pytest.mark.parametrize("settings", [{}, CACHED])
 def test_layers_are_the_casters(field, view, settings):
     image, surfaces = field
-    stage = Stage(True)
-    show(stage, image, surfaces, view, **settings)
-    picture = stage.picture()
-    crossings, model = expected(stage, image, surfaces)
+    scene = ComparisonScene(ours=True)
+    show(scene, image, surfaces, view, **settings)
+    picture = scene.picture()
+    crossings, model = expected(scene, image, surfaces)
     assert np.bincount(crossings.ray).max() >= 4
     check_layers(picture, model)
     first = np.full(SIZE[0] * SIZE[1], np.inf)
     np.minimum.at(first, crossings.ray, crossings.depth)
-    depth = progiso.depth(stage.mapper).ravel()
+    depth = progiso.depth(scene.mapper).ravel()
     far = ~(np.isclose(depth, first, atol=2e-4) | np.isinf(depth) & np.isinf(first))
     assert far.mean() <= tolerances.LAYERS_PIXELS
 
@@ -77,13 +78,13 @@ def test_layers_are_the_casters(field, view, settings):
 @pytest.mark.parametrize("settings", [{}, CACHED])
 def test_cropped_layers_are_the_casters(field, regions, settings):
     image, surfaces = field
-    stage = Stage(True)
-    mapper = show(stage, image, surfaces, **settings).GetMapper()
+    scene = ComparisonScene(ours=True)
+    mapper = show(scene, image, surfaces, **settings).GetMapper()
     mapper.CroppingOn()
     mapper.SetCroppingRegionPlanes(PLANES)
     mapper.SetCroppingRegionFlags(REGIONS[regions])
-    picture = stage.picture()
-    _, model = expected(stage, image, surfaces, cropping=(PLANES, REGIONS[regions]))
+    picture = scene.picture()
+    _, model = expected(scene, image, surfaces, cropping=(PLANES, REGIONS[regions]))
     off = (np.abs(picture - model).max(axis=2) > tolerances.LAYERS_LEVELS).mean()
     assert off <= tolerances.LAYERS_PIXELS
 
@@ -91,20 +92,21 @@ def test_cropped_layers_are_the_casters(field, regions, settings):
 def test_layers_end_at_opaque_geometry(field):
     """Behind a sphere there are none; its own colour is blended with those before it."""
     image, surfaces = field
-    stage = Stage(True)
-    show(stage, image, surfaces)
+    scene = ComparisonScene(ours=True)
+    show(scene, image, surfaces)
     centre = np.array(image.GetCenter())
     actor = ball(8, (1, 0.9, 0.3), centre=centre)
-    stage.renderer.AddActor(actor)
-    picture = stage.picture()
-    camera = Camera.from_vtk(stage.camera)
+    scene.renderer.AddActor(actor)
+    picture = scene.picture()
+    camera = Camera.from_vtk(scene.camera)
     origins, directions = camera.rays(SIZE)
     towards = np.einsum("ij,ij->i", centre - origins, directions)
     miss = np.linalg.norm(centre - origins - towards[:, None] * directions, axis=1)
     end = np.where(miss < 8, towards - np.sqrt(np.maximum(64 - miss**2, 0)), np.inf)
     background = np.where((miss < 8)[:, None], (1, 0.9, 0.3), BACKGROUND)
-    crossings, model = expected(stage, image, surfaces, end, background)
-    # a sphere of triangles lies a little within the sphere: what is near its edge or just before it does not count
+    crossings, model = expected(scene, image, surfaces, end, background)
+    # a sphere of triangles lies a little within the sphere: what is near its edge or just before it
+    # does not count
     edge = np.abs(miss - 8) < 0.15
     near = np.zeros(len(miss), bool)
     close = (crossings.depth > end[crossings.ray] - 0.05) & (
@@ -117,28 +119,29 @@ def test_layers_end_at_opaque_geometry(field):
     assert off <= tolerances.LAYERS_PIXELS
 
 
-# --- the division of the work ------------------------------------------------------------------------------------------------
+# --- the division of the work ---------------------------------------------------------------------
 
 
 def least_budget(image, surfaces, lit):
-    stage = Stage(True)
-    show(stage, image, surfaces, MemoryBudget=1).GetProperty().SetShade(lit)
-    stage.renderer.AddActor(ball(20, centre=image.GetCenter()))
+    scene = ComparisonScene(ours=True)
+    show(scene, image, surfaces, MemoryBudget=1).GetProperty().SetShade(lit)
+    scene.renderer.AddActor(ball(20, centre=image.GetCenter()))
     with vtk_messages() as messages:
-        stage.window.Render()
+        scene.window.Render()
     words = "".join(messages).split()
     return int(words[words.index("least") + 1])
 
 
 @pytest.fixture(scope="module", params=[False, True], ids=["unlit", "lit"])
 def whole(request):
-    """A volume larger than the smallest cache and buffer, whether it is lit, and picture and depth of one pass."""
-    image = progiso.compress(make_image(blobs((60, 64, 56), 3, waves=5)), rate=32)
-    stage = Stage(True)
-    show(stage, image, NESTED).GetProperty().SetShade(request.param)
-    stage.renderer.AddActor(ball(20, centre=image.GetCenter()))
-    picture = stage.picture()
-    return image, request.param, picture, progiso.depth(stage.mapper)
+    """A volume larger than the smallest cache and buffer, whether it is lit, and picture and depth
+    of one pass."""
+    image = progiso.compress(make_image(blobs((60, 64, 56), 3, waves=5)), 32)
+    scene = ComparisonScene(ours=True)
+    show(scene, image, NESTED).GetProperty().SetShade(request.param)
+    scene.renderer.AddActor(ball(20, centre=image.GetCenter()))
+    picture = scene.picture()
+    return image, request.param, picture, progiso.depth(scene.mapper)
 
 
 DIVISIONS = {
@@ -155,7 +158,7 @@ DIVISIONS = {
 
 @pytest.mark.parametrize("name", DIVISIONS)
 def test_division_of_the_work(whole, name):
-    """Not by one bit: neither cache nor speculation, buffers, memory or the number of passes shows."""
+    """Neither cache nor speculation, buffers, memory or the number of passes shows in any bit."""
     image, lit, picture, depth = whole
     settings = dict(DIVISIONS[name])
     if "MemoryBudget" in settings:
@@ -163,33 +166,34 @@ def test_division_of_the_work(whole, name):
         settings["MemoryBudget"] = (
             least if settings["MemoryBudget"] == "least" else int(1.05 * least)
         )
-    stage = Stage(True)
-    show(stage, image, NESTED, **settings, **CACHED).GetProperty().SetShade(lit)
-    stage.renderer.AddActor(ball(20, centre=image.GetCenter()))
-    stage.renderer.ResetCameraClippingRange()
+    scene = ComparisonScene(ours=True)
+    show(scene, image, NESTED, **settings, **CACHED).GetProperty().SetShade(lit)
+    scene.renderer.AddActor(ball(20, centre=image.GetCenter()))
+    scene.renderer.ResetCameraClippingRange()
     renders = 1
-    stage.window.Render()
-    while not stage.mapper.GetConverged():
-        stage.window.Render()
+    scene.window.Render()
+    while not scene.mapper.GetConverged():
+        scene.window.Render()
         renders += 1
         assert renders < 2000
     assert (renders > 3) == ("MaximumPassesPerRender" in settings)
-    assert progiso.depth(stage.mapper).tobytes() == depth.tobytes()
-    assert np.array_equal(stage.picture(), picture)
+    assert progiso.depth(scene.mapper).tobytes() == depth.tobytes()
+    assert np.array_equal(scene.picture(), picture)
 
 
 def test_a_partial_picture_has_no_more_than_the_complete_one(whole):
-    """Layers come in from the front: a picture on its way is nowhere nearer to nothing than one before it."""
+    """Layers come in from the front: a picture on its way is nowhere nearer to nothing than one
+    before it."""
     image, lit, picture, _ = whole
-    stage = Stage(True)
+    scene = ComparisonScene(ours=True)
     show(
-        stage, image, NESTED, MaximumPassesPerRender=1, SpeculationLimit=1, **CACHED
+        scene, image, NESTED, MaximumPassesPerRender=1, SpeculationLimit=1, **CACHED
     ).GetProperty().SetShade(lit)
-    stage.renderer.AddActor(ball(20, centre=image.GetCenter()))
-    stage.renderer.ResetCameraClippingRange()
+    scene.renderer.AddActor(ball(20, centre=image.GetCenter()))
+    scene.renderer.ResetCameraClippingRange()
     fractions = []
-    while not stage.mapper.GetConverged() or not fractions:
-        stage.window.Render()
-        fractions.append(stage.mapper.GetCompletedFraction())
+    while not scene.mapper.GetConverged() or not fractions:
+        scene.window.Render()
+        fractions.append(scene.mapper.GetCompletedFraction())
     assert fractions == sorted(fractions) and fractions[0] < 0.5 and fractions[-1] == 1
-    assert np.array_equal(stage.picture(), picture)
+    assert np.array_equal(scene.picture(), picture)

@@ -16,7 +16,7 @@ from vtkmodules.vtkRenderingCore import (
 from vtkmodules.vtkRenderingVolume import vtkVolumePicker
 
 import progiso
-from helpers.comparison import GREEN, NESTED, OPAQUE, RED, SIZE, Stage, show
+from helpers.comparison import GREEN, NESTED, OPAQUE, RED, SIZE, ComparisonScene, show
 from helpers.geometry import SHAPE, TURNED, ball, wall
 from helpers.images import blobs, make_image, reference_volume
 from helpers.layers import crossings_of, to_index
@@ -32,11 +32,12 @@ def image():
     )
 
 
-def first_crossings(stage, image, surfaces, matrix=None):
-    """Return by the caster, for each pixel from the bottom left, the place and isovalue of the first crossing."""
-    camera, volume = Camera.from_vtk(stage.camera), reference_volume(image, matrix)
+def first_crossings(scene, image, surfaces, matrix=None):
+    """Return by the caster, for each pixel from the bottom left, the place and isovalue of the
+    first crossing."""
+    camera, volume = Camera.from_vtk(scene.camera), reference_volume(image, matrix)
     crossings = crossings_of(
-        volume, sorted(surfaces), camera, SIZE, stage.camera.GetClippingRange()
+        volume, sorted(surfaces), camera, SIZE, scene.camera.GetClippingRange()
     )
     origins, directions = camera.rays(SIZE)
     found = {}
@@ -51,14 +52,14 @@ def first_crossings(stage, image, surfaces, matrix=None):
 @pytest.mark.parametrize("surfaces", [OPAQUE, {v: (*look[:3], 1.0) for v, look in NESTED.items()}])
 @pytest.mark.parametrize("matrix", [None, TURNED])
 def test_hits_are_the_casters(image, surfaces, matrix):
-    stage = Stage(True)
-    show(stage, image, surfaces, matrix=matrix)
-    stage.render()
-    expected = first_crossings(stage, image, surfaces, matrix)
+    scene = ComparisonScene(ours=True)
+    show(scene, image, surfaces, matrix=matrix)
+    scene.render()
+    expected = first_crossings(scene, image, surfaces, matrix)
     picker, places = progiso.vtkIsosurfacePicker(), 0
     for pixel in PIXELS:
-        picked = picker.Pick(*pixel, 0, stage.renderer)
-        assert picked == (pixel in expected) == (picker.GetVolume() is stage.volumes[0])
+        picked = picker.Pick(*pixel, 0, scene.renderer)
+        assert picked == (pixel in expected) == (picker.GetVolume() is scene.volumes[0])
         if picked:
             place, isovalue = expected[pixel]
             assert np.abs(np.subtract(picker.GetPickPosition(), place)).max() < 1e-3
@@ -71,13 +72,13 @@ def test_hits_are_the_casters(image, surfaces, matrix):
 
 def test_the_first_layer_is_picked(image):
     """Of a translucent surface the place of the first hit."""
-    stage = Stage(True)
-    show(stage, image, NESTED)
-    stage.render()
-    expected = first_crossings(stage, image, NESTED)
+    scene = ComparisonScene(ours=True)
+    show(scene, image, NESTED)
+    scene.render()
+    expected = first_crossings(scene, image, NESTED)
     picker = progiso.vtkIsosurfacePicker()
     for pixel in PIXELS:
-        assert picker.Pick(*pixel, 0, stage.renderer) == (pixel in expected)
+        assert picker.Pick(*pixel, 0, scene.renderer) == (pixel in expected)
         if pixel in expected:
             assert np.abs(np.subtract(picker.GetPickPosition(), expected[pixel][0])).max() < 1e-3
             assert picker.GetIsovalue() == pytest.approx(expected[pixel][1], abs=1e-12)
@@ -85,78 +86,78 @@ def test_the_first_layer_is_picked(image):
 
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
 def test_opaque_geometry_hides_from_the_picker(image, surfaces):
-    stage = Stage(True)
-    show(stage, image, surfaces)
-    free = stage.picture()
-    stage.renderer.AddActor(wall(stage.camera, 0.3))
-    hidden = stage.picture()
+    scene = ComparisonScene(ours=True)
+    show(scene, image, surfaces)
+    free = scene.picture()
+    scene.renderer.AddActor(wall(scene.camera, 0.3))
+    hidden = scene.picture()
     picker, counts = progiso.vtkIsosurfacePicker(), [0, 0]
     for x, y in PIXELS:
         row = SIZE[1] - 1 - y
         behind_wall = not np.array_equal(hidden[row, x], free[row, x])
-        picked = picker.Pick(x, y, 0, stage.renderer)
+        picked = picker.Pick(x, y, 0, scene.renderer)
         assert not (picked and behind_wall)
         counts[behind_wall] += picked or behind_wall
     assert min(counts) > 20
 
 
 def two_volumes(image):
-    stage = Stage(True)
-    show(stage, image)
+    scene = ComparisonScene(ours=True)
+    show(scene, image)
     shift = np.eye(4)
     shift[:3, 3] = 6, 4, 2
-    stage.add(image, {0.1: (*RED, 1.0)}, matrix=shift)
-    stage.render()
-    return stage
+    scene.add(image, {0.1: (*RED, 1.0)}, matrix=shift)
+    scene.render()
+    return scene
 
 
 def test_the_nearest_volume_is_picked(image):
     """Of two that overlap; of those alone that are pickable, visible, or in the list."""
-    stage = two_volumes(image)
+    scene = two_volumes(image)
     depths = [
         np.nan_to_num(progiso.depth(volume.GetMapper()), posinf=1e9)[::-1]
-        for volume in stage.volumes
+        for volume in scene.volumes
     ]
     picker, seen = progiso.vtkIsosurfacePicker(), set()
     for x, y in PIXELS:
         pair = [depth[y, x] for depth in depths]
         if abs(pair[0] - pair[1]) > 1e-2:
             assert (
-                picker.Pick(x, y, 0, stage.renderer)
-                and picker.GetVolume() is stage.volumes[int(np.argmin(pair))]
+                picker.Pick(x, y, 0, scene.renderer)
+                and picker.GetVolume() is scene.volumes[int(np.argmin(pair))]
             )
             seen.add(int(np.argmin(pair)))
     assert seen == {0, 1}
     x, y = next((x, y) for x, y in PIXELS if depths[0][y, x] + 1e-2 < depths[1][y, x] < 1e9)
-    front, back = stage.volumes
+    front, back = scene.volumes
     front.PickableOff()
-    assert not picker.Pick(x, y, 0, stage.renderer)  # it still hides what is behind
+    assert not picker.Pick(x, y, 0, scene.renderer)  # it still hides what is behind
     back.PickableOff()
     front.PickableOn()
-    assert picker.Pick(x, y, 0, stage.renderer) and picker.GetVolume() is front
+    assert picker.Pick(x, y, 0, scene.renderer) and picker.GetVolume() is front
     picker.PickFromListOn()
-    assert not picker.Pick(x, y, 0, stage.renderer)
+    assert not picker.Pick(x, y, 0, scene.renderer)
     picker.AddPickList(front)
-    assert picker.Pick(x, y, 0, stage.renderer)
+    assert picker.Pick(x, y, 0, scene.renderer)
     front.VisibilityOff()
-    stage.render()
-    assert not picker.Pick(x, y, 0, stage.renderer)
+    scene.render()
+    assert not picker.Pick(x, y, 0, scene.renderer)
 
 
 def test_the_picker_keeps_to_its_renderer(image):
     """A viewport's own pixels; nothing outside, and nothing for a renderer that shows none."""
-    stage = Stage(True)
-    show(stage, image)
-    stage.renderer.SetViewport(0.5, 0, 1, 1)
+    scene = ComparisonScene(ours=True)
+    show(scene, image)
+    scene.renderer.SetViewport(0.5, 0, 1, 1)
     other = vtkRenderer()
     other.SetViewport(0, 0, 0.5, 1)
-    stage.window.AddRenderer(other)
-    stage.render()
-    hits = np.isfinite(progiso.depth(stage.mapper))[::-1]
+    scene.window.AddRenderer(other)
+    scene.render()
+    hits = np.isfinite(progiso.depth(scene.mapper))[::-1]
     picker = progiso.vtkIsosurfacePicker()
     for x, y in PIXELS:
         inside = x >= SIZE[0] // 2 and hits[y, x - SIZE[0] // 2]
-        assert picker.Pick(x, y, 0, stage.renderer) == inside
+        assert picker.Pick(x, y, 0, scene.renderer) == inside
         assert not picker.Pick(x, y, 0, other)
     assert hits[:, :].sum() > 1000
 
@@ -164,9 +165,9 @@ def test_the_picker_keeps_to_its_renderer(image):
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
 def test_what_is_cut_away_is_not_picked(image, surfaces):
     """Cropped and clipped: what shows behind the cut is picked."""
-    stage = Stage(True)
-    mapper = show(stage, image, surfaces).GetMapper()
-    whole = stage.picture() is not None and first_crossings(stage, image, surfaces)
+    scene = ComparisonScene(ours=True)
+    mapper = show(scene, image, surfaces).GetMapper()
+    whole = scene.picture() is not None and first_crossings(scene, image, surfaces)
     mapper.CroppingOn()
     bounds = image.GetBounds()
     mapper.SetCroppingRegionPlanes(
@@ -177,10 +178,10 @@ def test_what_is_cut_away_is_not_picked(image, surfaces):
     plane.SetOrigin(image.GetCenter())
     plane.SetNormal(0, 0, -1)
     mapper.AddClippingPlane(plane)
-    stage.render()
+    scene.render()
     picker, picked, others = progiso.vtkIsosurfacePicker(), 0, 0
     for pixel in PIXELS:
-        if picker.Pick(*pixel, 0, stage.renderer):
+        if picker.Pick(*pixel, 0, scene.renderer):
             place = picker.GetPickPosition()
             assert place[0] > bounds[0] + 9 - 1e-3 and place[2] < image.GetCenter()[2] + 1e-3
             picked += 1
@@ -189,27 +190,27 @@ def test_what_is_cut_away_is_not_picked(image, surfaces):
 
 
 def test_picking_is_told_of(image):
-    stage = Stage(True)
-    show(stage, image)
-    stage.render()
+    scene = ComparisonScene(ours=True)
+    show(scene, image)
+    scene.render()
     picker, events = progiso.vtkIsosurfacePicker(), []
     for name in ("StartPickEvent", "PickEvent", "EndPickEvent"):
         picker.AddObserver(name, lambda _, event: events.append(event))
-    rows, columns = np.nonzero(np.isfinite(progiso.depth(stage.mapper))[::-1])
-    assert picker.Pick(int(columns[0]), int(rows[0]), 0, stage.renderer)
+    rows, columns = np.nonzero(np.isfinite(progiso.depth(scene.mapper))[::-1])
+    assert picker.Pick(int(columns[0]), int(rows[0]), 0, scene.renderer)
     assert events == ["StartPickEvent", "PickEvent", "EndPickEvent"]
     assert "Isovalue: 0.1" in str(picker)
     events.clear()
-    assert not picker.Pick(0, 0, 0, stage.renderer)
+    assert not picker.Pick(0, 0, 0, scene.renderer)
     assert events == ["StartPickEvent", "EndPickEvent"]
 
 
-# --- VTK's own ---------------------------------------------------------------------------------------------------------------
+# --- VTK's own ------------------------------------------------------------------------------------
 
 
-def select(stage, association, area):
+def select(scene, association, area):
     selector = vtkHardwareSelector()
-    selector.SetRenderer(stage.renderer)
+    selector.SetRenderer(scene.renderer)
     selector.SetArea(*area)
     selector.SetFieldAssociation(association)
     selection = selector.Select()
@@ -227,23 +228,23 @@ def select(stage, association, area):
 @pytest.mark.parametrize("matrix", [None, TURNED])
 def test_the_selector_finds_cells(image, surfaces, matrix):
     """Of each pixel the cell of the image that holds the first hit."""
-    stage = Stage(True)
-    show(stage, image, surfaces, matrix=matrix)
-    stage.render()
-    expected = first_crossings(stage, image, surfaces, matrix)
+    scene = ComparisonScene(ours=True)
+    show(scene, image, surfaces, matrix=matrix)
+    scene.render()
+    expected = first_crossings(scene, image, surfaces, matrix)
     volume = reference_volume(image, matrix)
     cells = np.array(SHAPE[::-1]) - 1
     hits = 0
     for x, y in PIXELS[::3]:
-        found = select(stage, vtkDataObject.FIELD_ASSOCIATION_CELLS, (x, y, x, y))
-        assert set(found) == ({stage.volumes[0]} if (x, y) in expected else set())
+        found = select(scene, vtkDataObject.FIELD_ASSOCIATION_CELLS, (x, y, x, y))
+        assert set(found) == ({scene.volumes[0]} if (x, y) in expected else set())
         if found:
             place = to_index(volume, expected[x, y][0][None])[0]
             if (
                 np.abs(place - np.round(place)).min() > 1e-3
             ):  # else it may as well lie in the next cell
                 cell = place.astype(int)
-                assert found[stage.volumes[0]] == {
+                assert found[scene.volumes[0]] == {
                     int(cell[0] + cells[0] * (cell[1] + cells[1] * cell[2]))
                 }
                 hits += 1
@@ -252,15 +253,15 @@ def test_the_selector_finds_cells(image, surfaces, matrix):
 
 def test_the_selector_tells_props_apart(image):
     """Two volumes and a sphere: who is in front."""
-    stage = two_volumes(image)
+    scene = two_volumes(image)
     sphere = ball(9, centre=(10, 0, 15))
-    stage.renderer.AddActor(sphere)
-    picture = stage.picture()[::-1]
+    scene.renderer.AddActor(sphere)
+    picture = scene.picture()[::-1]
     owners = {}
     for x, y in PIXELS:
-        found = set(select(stage, vtkDataObject.FIELD_ASSOCIATION_CELLS, (x, y, x, y)))
+        found = set(select(scene, vtkDataObject.FIELD_ASSOCIATION_CELLS, (x, y, x, y)))
         color = picture[y, x]
-        wanted = {0: {stage.volumes[0]}, 1: {stage.volumes[1]}, 2: {sphere}, 3: set()}
+        wanted = {0: {scene.volumes[0]}, 1: {scene.volumes[1]}, 2: {sphere}, 3: set()}
         colors = [255 * np.array(c) for c in (GREEN, RED, (1, 0.9, 0.3), (0.2, 0.3, 0.4))]
         owner = int(np.argmin([np.abs(color - c).max() for c in colors]))
         assert found == wanted[owner]
@@ -270,44 +271,48 @@ def test_the_selector_tells_props_apart(image):
 
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
 def test_the_picture_after_a_selection_is_the_same(image, surfaces):
-    stage = Stage(True)
-    show(stage, image, surfaces)
-    first = stage.picture()
-    select(stage, vtkDataObject.FIELD_ASSOCIATION_CELLS, (10, 10, 100, 100))
-    assert np.array_equal(stage.picture(), first)
+    scene = ComparisonScene(ours=True)
+    show(scene, image, surfaces)
+    first = scene.picture()
+    select(scene, vtkDataObject.FIELD_ASSOCIATION_CELLS, (10, 10, 100, 100))
+    assert np.array_equal(scene.picture(), first)
 
 
 def test_vtk_pickers(image):
-    """vtkPropPicker finds the volume where it shows, vtkWorldPointPicker the place by the depth buffer."""
-    stage = Stage(True)
-    show(stage, image)
-    stage.render()
-    expected = first_crossings(stage, image, OPAQUE)
+    """vtkPropPicker finds the volume where it shows, vtkWorldPointPicker the place by the depth
+    buffer."""
+    scene = ComparisonScene(ours=True)
+    show(scene, image)
+    scene.render()
+    expected = first_crossings(scene, image, OPAQUE)
     prop, world = vtkPropPicker(), vtkWorldPointPicker()
     for x, y in PIXELS[::2]:
-        assert bool(prop.Pick(x, y, 0, stage.renderer)) == ((x, y) in expected)
+        assert bool(prop.Pick(x, y, 0, scene.renderer)) == ((x, y) in expected)
         if (x, y) in expected:
-            assert prop.GetVolume() is stage.volumes[0]
-            world.Pick(x, y, 0, stage.renderer)
+            assert prop.GetVolume() is scene.volumes[0]
+            world.Pick(x, y, 0, scene.renderer)
             assert np.abs(np.subtract(world.GetPickPosition(), expected[x, y][0])).max() < 0.3
 
 
 @pytest.mark.parametrize("kind", [vtkCellPicker, vtkPointPicker, vtkVolumePicker])
 def test_pickers_that_read_samples(image, kind):
-    """In a compressed volume there are none to read: it is not picked. In a plain one VTK picks by opacities, not isovalues."""
-    stage = Stage(True)
-    show(stage, image)
-    assert stage.mapper.GetDataSetInput() is None and stage.mapper.GetInput() is image
-    assert stage.mapper.GetBounds() == image.GetBounds() == stage.volumes[0].GetBounds()
-    stage.render()
+    """In a compressed volume there are none to read: it is not picked.
+
+    In a plain one VTK picks by opacities, not isovalues.
+    """
+    scene = ComparisonScene(ours=True)
+    show(scene, image)
+    assert scene.mapper.GetDataSetInput() is None and scene.mapper.GetInput() is image
+    assert scene.mapper.GetBounds() == image.GetBounds() == scene.volumes[0].GetBounds()
+    scene.render()
     picker = kind()
-    rows, columns = np.nonzero(np.isfinite(progiso.depth(stage.mapper))[::-1])
+    rows, columns = np.nonzero(np.isfinite(progiso.depth(scene.mapper))[::-1])
     x, y = int(columns[len(columns) // 2]), int(rows[len(rows) // 2])
-    picker.Pick(x, y, 0, stage.renderer)
+    picker.Pick(x, y, 0, scene.renderer)
     assert not (kind is not vtkPointPicker and picker.GetCellId() >= 0)
     plain = progiso.decompress(image)
-    stage.mapper.SetInputData(plain)
-    stage.render()
-    assert stage.mapper.GetDataSetInput() is plain
+    scene.mapper.SetInputData(plain)
+    scene.render()
+    assert scene.mapper.GetDataSetInput() is plain
     if kind is not vtkPointPicker:
-        assert picker.Pick(x, y, 0, stage.renderer) and picker.GetVolume() is stage.volumes[0]
+        assert picker.Pick(x, y, 0, scene.renderer) and picker.GetVolume() is scene.volumes[0]

@@ -48,7 +48,8 @@ def complete(image):
 
 
 def test_watched_window_refines(image, complete):
-    """Each render adds to the image and asks for another, until it is complete; then it asks no more."""
+    """Each render adds to the image and asks for another, until it is complete; then it asks no
+    more."""
     scene = Watched(image, TimeAllowance=0.0)
     scene.window.Render()
     fractions = [scene.mapper.GetCompletedFraction()]
@@ -81,7 +82,8 @@ def test_time_allowance_holds(image, complete):
 
 
 def test_captures_are_complete(image, complete):
-    """Without swapping buffers, which is how pictures of a watched window are taken, the whole image is waited for."""
+    """Without swapping buffers, which is how pictures of a watched window are taken, the whole
+    image is waited for."""
     scene = Watched(image, TimeAllowance=0.0)
     scene.window.Render()
     assert not scene.mapper.GetConverged()

@@ -1,7 +1,10 @@
-"""What must hold for any scene, on random ones: how the work is divided, how the volume lies in its blocks and axes, and which run
-it is do not show; no ray slips through a closed surface.
+"""What must hold for any scene, on random ones.
 
-    pytest Testing/Python/rendering/test_properties.py --hypothesis-profile long    # PROGISO_EXAMPLES of each, 2000 by default
+Neither how the work is divided, nor how the volume lies in its blocks and axes, nor which run it is
+shows in a picture; no ray slips through a closed surface. For more examples, PROGISO_EXAMPLES of
+each (2000 by default):
+
+    pytest Testing/Python/rendering/test_properties.py --hypothesis-profile long
 """
 
 import hashlib
@@ -52,12 +55,13 @@ def same_pictures(scene, other):
     depth, expected = other.depth(), scene.depth()
     different = np.argwhere(depth.view(np.uint32) != expected.view(np.uint32))
     assert len(different) == 0, (
-        f"{len(different)} pixels, first {different[0]}: {depth[tuple(different[0])]}, not {expected[tuple(different[0])]}"
+        f"{len(different)} pixels, first {different[0]}:"
+        f" {depth[tuple(different[0])]}, not {expected[tuple(different[0])]}"
     )
     assert other.picture().tobytes() == scene.picture().tobytes()
 
 
-# --- division of the work, and repetition ------------------------------------------------------------------------------------
+# --- division of the work, and repetition ---------------------------------------------------------
 
 
 @given(
@@ -72,7 +76,8 @@ def same_pictures(scene, other):
     division=DIVISIONS,
 )
 def test_division_of_the_work(kind, shape, seed, rate, quantile, lit, division):
-    """Speculation, memory budget, passes a render, buffers and decoding as a whole: not one bit of the picture."""
+    """Speculation, memory budget, passes a render, buffers and decoding as a whole: not one bit of
+    the picture."""
     values = random_field(kind, shape, seed)
     image, isovalue = (
         progiso.compress(make_image(values), rate=rate),
@@ -105,7 +110,7 @@ def test_another_process():
     assert done.stdout.split()[-1] == hashlib.sha256(pictures_of_every_kind()).hexdigest()
 
 
-# --- how the volume lies -----------------------------------------------------------------------------------------------------
+# --- how the volume lies --------------------------------------------------------------------------
 
 #: An axis that goes the other way has its origin at its other end.
 AXES = st.permutations(range(3)).map(tuple)
@@ -126,7 +131,8 @@ def lying_otherwise(values, axes, signs):
 
 
 def padded(values, before, after):
-    """The samples among others that are farther below zero than any of theirs, at another phase of the blocks."""
+    """The samples among others that are farther below zero than any of theirs, at another phase of
+    the blocks."""
     value = float(np.floor(values.min())) - 0.5
     pad = list(zip(before[::-1], after[::-1]))
     return make_image(
@@ -142,11 +148,17 @@ def lossless(plain):
 
 
 @given(
-    kind=st.sampled_from(["noise", "smooth", "waves"]), shape=SHAPES, seed=SEEDS, isovalue=st.sampled_from([0.0, 0.1003, 0.5]),
-    axes=AXES, signs=SIGNS, cached=st.booleans(),
-)  # fmt: skip
+    kind=st.sampled_from(["noise", "smooth", "waves"]),
+    shape=SHAPES,
+    seed=SEEDS,
+    isovalue=st.sampled_from([0.0, 0.1003, 0.5]),
+    axes=AXES,
+    signs=SIGNS,
+    cached=st.booleans(),
+)
 def test_axes(kind, shape, seed, isovalue, axes, signs, cached):
-    """Permuted and mirrored axes: what the caster sees in the volume as it was, and the same colours."""
+    """Permuted and mirrored axes: what the caster sees in the volume as it was, and the same
+    colours."""
     values, camera = random_field(kind, shape, seed), random_camera(shape, seed)
     scenes = []
     for lie in (((0, 1, 2), (1, 1, 1)), (axes, signs)):
@@ -156,11 +168,17 @@ def test_axes(kind, shape, seed, isovalue, axes, signs, cached):
 
 
 @given(
-    kind=st.sampled_from(["noise", "smooth", "waves"]), shape=SHAPES, seed=SEEDS, isovalue=st.sampled_from([0.0, 0.1003, 0.5]),
-    before=st.tuples(*[st.integers(0, 3)] * 3), after=st.tuples(*[st.integers(0, 3)] * 3), cached=st.booleans(),
-)  # fmt: skip
+    kind=st.sampled_from(["noise", "smooth", "waves"]),
+    shape=SHAPES,
+    seed=SEEDS,
+    isovalue=st.sampled_from([0.0, 0.1003, 0.5]),
+    before=st.tuples(*[st.integers(0, 3)] * 3),
+    after=st.tuples(*[st.integers(0, 3)] * 3),
+    cached=st.booleans(),
+)
 def test_phase_of_the_blocks(kind, shape, seed, isovalue, before, after, cached):
-    """A surface within a volume, wherever it lies in the blocks: what the caster sees in the volume as it was."""
+    """A surface within a volume, wherever it lies in the blocks: what the caster sees in the volume
+    as it was."""
     values, camera = random_field(kind, shape, seed), random_camera(shape, seed)
     # closed, so that what is padded adds no surface, by as much as the normals reach
     values = np.pad(values, 2, constant_values=-1.0)
@@ -190,14 +208,18 @@ def check_same_surface(scenes, volume, kind):
     assert np.abs(np.subtract(*colors)).max(initial=0) <= tolerances.LIE_LEVELS
 
 
-# --- no cracks ---------------------------------------------------------------------------------------------------------------
+# --- no cracks ------------------------------------------------------------------------------------
 
 CLOSED = st.sampled_from([(kind, rate) for kind in cracks.RATES for rate in cracks.RATES[kind]])
 
 
 @given(
-    closed=CLOSED, shape=st.tuples(*[st.integers(9, 24)] * 3), seed=SEEDS, inside=st.booleans(), division=DIVISIONS,
-)  # fmt: skip
+    closed=CLOSED,
+    shape=st.tuples(*[st.integers(9, 24)] * 3),
+    seed=SEEDS,
+    inside=st.booleans(),
+    division=DIVISIONS,
+)
 def test_no_ray_slips_through(closed, shape, seed, inside, division):
     """Every ray that has to meet a closed surface does, and none that misses the volume."""
     (kind, rate), rng = closed, np.random.default_rng(seed)
@@ -221,7 +243,8 @@ def test_no_ray_slips_through(closed, shape, seed, inside, division):
 
 @pytest.mark.parametrize("kind", ["hollow", "thin"])
 def test_a_hole_shows(kind):
-    """The judge sees rays that leave through a hole in the skin, and surfaces where there is nothing."""
+    """The judge sees rays that leave through a hole in the skin, and surfaces where there is
+    nothing."""
     rng = np.random.default_rng(3)
     field = cracks.closed_field(kind, (16, 18, 20), rng)
     hole = field.values.copy()

@@ -1,4 +1,5 @@
-"""The isosurface among other things: depth buffer, opaque and translucent geometry, light, several volumes."""
+"""The isosurface among other things: depth buffer, opaque and translucent geometry, light, several
+volumes."""
 
 import ctypes
 
@@ -45,7 +46,8 @@ def flat(scene, rgb):
 
 
 def piece_of(compressed, axis, first, last):
-    """A part of a compressed volume with the whole stream; samples count from the volume's own first one."""
+    """A part of a compressed volume with the whole stream; samples count from the volume's own
+    first one."""
     part = vtkImageData()
     part.ShallowCopy(compressed)
     extent = list(compressed.GetExtent())
@@ -58,7 +60,7 @@ def piece_of(compressed, axis, first, last):
 @pytest.mark.parametrize("cells", [False, True])
 @pytest.mark.parametrize("settings", [{}, CACHED])
 def test_pieces_meet_without_a_seam(axis, cells, settings):
-    """Two mappers with a part of a volume each make the picture of the whole; neither alone does."""
+    """Two mappers with a part of a volume each make the whole picture; neither alone does."""
     values = make_image(blobs((40, 36, 44), 12), cells=cells, extent_start=(5, -3, 2))
     compressed = progiso.compress(values, rate=4)
     camera = orbit(reference_volume(compressed), 1, 8)
@@ -109,7 +111,7 @@ def across(camera, size):
 
 @pytest.mark.parametrize("parallel", [False, True])
 def test_depth_buffer(image, parallel):
-    """What VTK composites by is the depth of the surface, to the last places of the depth buffer."""
+    """VTK composites by the depth of the surface, to the last places of the depth buffer."""
     volume = reference_volume(image)
     camera = orbit(volume, 1, 4)
     if parallel:
@@ -153,7 +155,8 @@ def test_opaque_geometry_hides_and_is_hidden(image, distance):
 
 
 def test_translucent_geometry_in_front_blends(image):
-    """The isosurface is drawn in the opaque pass, so that what is translucent covers it and is not overwritten."""
+    """The isosurface is drawn in the opaque pass, so that what is translucent covers it and is not
+    overwritten."""
     camera = orbit(reference_volume(image), 1, 4)
     scene = Scene(image, ISOVALUE, camera, SIZE)
     flat(scene, (0, 1, 0))
@@ -227,7 +230,8 @@ def test_light_falls_on_smooth_normals(spacing, direction):
 
 
 def test_ambient_diffuse_and_colour(image):
-    """Without shading the colour is the transfer function's at the isovalue; ambient light alone gives its share of it."""
+    """Without shading the colour is the transfer function's at the isovalue; ambient light alone
+    gives its share of it."""
     scene = Scene(image, ISOVALUE, orbit(reference_volume(image), 1, 4), SIZE)
     function = vtkColorTransferFunction()
     function.AddRGBPoint(ISOVALUE - 1, 0, 0, 1)
@@ -245,7 +249,8 @@ def test_ambient_diffuse_and_colour(image):
 
 
 def test_viewports(image):
-    """Two renderers side by side each show their part, and the depth image has the size of the viewport."""
+    """Two renderers side by side each show their part, and the depth image has the size of the
+    viewport."""
     camera = orbit(reference_volume(image), 1, 4)
     alone = Scene(image, ISOVALUE, camera, (80, 120)).depth()
     scene = Scene(image, ISOVALUE, camera, SIZE)
@@ -259,7 +264,8 @@ def test_viewports(image):
 
 
 def test_gl_errors_are_counted(image):
-    """The count that every scene's render is checked by does count: an error made on purpose shows in it."""
+    """The count that every scene's render is checked by does count: an error made on purpose shows
+    in it."""
     scene = Scene(image, ISOVALUE, orbit(reference_volume(image), 1, 4), SIZE)
     scene.render()
     library = {
@@ -286,7 +292,7 @@ def truncated(image):
 
 @pytest.mark.parametrize("name", BAD)
 def test_errors_name_what_is_wrong(name):
-    """Rendering without a usable input says so and shows the background, however often it is asked."""
+    """Rendering without a usable input says so and shows the background, however often."""
     scene = Scene(BAD[name](), 0.0, Camera((30, 30, 30), (4, 4, 4)))
     for _ in range(2):
         with vtk_messages() as messages:
@@ -321,7 +327,8 @@ def mesh_scene(image, isovalue, scene):
 
 
 def test_lit_like_meshes():
-    """With a light from beside and behind the surface looks like FlyingEdges' mesh, and not as VTK's volume mapper has it."""
+    """With a light from beside and behind the surface looks like FlyingEdges' mesh, and not as
+    VTK's volume mapper has it."""
     image = make_image(blobs((40, 40, 40)))
     pictures = {}
     for like_meshes in (True, False):

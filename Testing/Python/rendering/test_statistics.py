@@ -90,7 +90,8 @@ def test_table_says_the_same(scene):
 
 
 def test_details_are_there_when_asked_for(scene):
-    """Every stage that ran for the image has its time; without details nobody counts blocks or asks the clock."""
+    """Every stage that ran for the image has its time; without details nobody counts blocks or asks
+    the clock."""
     statistics = scene.statistics()
     assert set(statistics["stage_ms"]) == set(statistics["stages"])
     assert all(
@@ -126,7 +127,7 @@ def test_memory_formula(shape, size, settings):
     check_memory(image, scene.statistics())
 
 
-# --- what a scene does not need is not there ---------------------------------------------------------------------------------
+# --- what a scene does not need is not there ------------------------------------------------------
 
 SHAPE, SIZE = (100, 90, 110), (160, 120)
 BLOCKS, MACROCELLS, PIXELS = 25 * 23 * 28, 7 * 6 * 7, 160 * 120
@@ -194,7 +195,8 @@ def test_speculation_takes_no_memory(volume):
 
 
 def feature(volume, change, isovalues=((0.5, 1.0),), **settings):
-    """Buffers and stages of a lit scene with isovalues of these opacities, after `change` of the mapper."""
+    """Buffers and stages of a lit scene with isovalues of these opacities, after `change` of the
+    mapper."""
     image, camera = volume
     scene = Scene(image, 0.5, camera, SIZE, lit=True, **settings)
     opacities = vtkPiecewiseFunction()
@@ -221,7 +223,8 @@ def crop(mapper):
 
 @pytest.mark.parametrize("settings", [{}, CACHED])
 def test_what_features_take(volume, settings):
-    """Clipping and cropping take nothing, a second isovalue 4 bytes a pixel, translucency 20 without a cache."""
+    """Clipping and cropping take nothing, a second isovalue 4 bytes a pixel, translucency 20
+    without a cache."""
     plain, stages = feature(volume, lambda mapper: None, **settings)
     assert feature(volume, add_clipping_plane, **settings) == (plain, stages)
     assert feature(volume, crop, **settings)[0] == plain

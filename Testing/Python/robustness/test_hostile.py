@@ -1,5 +1,5 @@
-"""Damaged streams and hostile metadata: images of them are wrong, but complete, repeatable and without an error of OpenGL, or
-there is one clear error."""
+"""Damaged streams and hostile metadata: images of them are wrong, but complete, repeatable and
+without an error of OpenGL, or there is one clear error."""
 
 import subprocess
 import sys
@@ -21,7 +21,8 @@ SHAPE = (36, 40, 44)
 CAMERA = Camera((90.0, 70.0, 110.0), (21.5, 19.5, 17.5), view_angle=30.0)
 SIZE = (80, 60)
 
-# Rays that wait take one more pass for each block along them whose turn has come, few even where all blocks are active.
+# Rays that wait take one more pass for each block along them whose turn has come, few even where
+# all blocks are active.
 MOST_PASSES = 400
 
 
@@ -69,8 +70,9 @@ def window():
 
 @pytest.fixture(scope="module", params=DAMAGE)
 def damaged(request):
-    """A compressed volume with a damaged stream, and an isovalue in the middle of what libzfp decodes of it."""
-    image = progiso.compress(make_image(blobs(SHAPE, 3)), rate=8)
+    """A compressed volume with a damaged stream, and an isovalue in the middle of what libzfp
+    decodes of it."""
+    image = progiso.compress(make_image(blobs(SHAPE, 3)), 8)
     stream = vtk_to_numpy(image.GetFieldData().GetAbstractArray(PREFIX + "Stream"))
     DAMAGE[request.param](
         stream, np.random.default_rng(5)
@@ -135,7 +137,8 @@ def test_colors(damaged):
 
 
 def infinite_block(sign):
-    """Find bits of a block of the largest exponent that libzfp decodes to infinite values of one sign, among others."""
+    """Find bits of a block of the largest exponent that libzfp decodes to infinite values of one
+    sign, among others."""
     rng = np.random.default_rng(1)
     while True:  # a few times
         bits = np.append(np.array([255, 255], np.uint8), rng.integers(0, 256, 254, np.uint8))
@@ -168,7 +171,7 @@ def test_lying_range(low, high):
     assert shows(image, [1.0], **CACHED) == expected
 
 
-# --- metadata ----------------------------------------------------------------------------------------------------------------
+# --- metadata -------------------------------------------------------------------------------------
 
 NAN, INFINITY = float("nan"), float("inf")
 GEOMETRIES = {
@@ -257,7 +260,10 @@ def test_metadata(folder, case):
 
 
 def test_origin_of_two_numbers(folder):
-    header = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nspacings: 1 1 1\nspace origin: (1,2)\nencoding: raw\n\n"
+    header = (
+        "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nspacings: 1 1 1\n"
+        "space origin: (1,2)\nencoding: raw\n\n"
+    )
     (folder / "x.nrrd").write_bytes(header.encode() + bytes(8))
     with pytest.raises(ValueError, match=r"origin \[1.0, 2.0\]"):
         progiso.read(folder / "x.nrrd")

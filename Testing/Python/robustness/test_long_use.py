@@ -1,4 +1,5 @@
-"""Many mappers, many volumes, many windows: what they leave behind, what they share, and that none disturbs another."""
+"""Many mappers, many volumes, many windows: what they leave behind, what they share, and that none
+disturbs another."""
 
 import gc
 import sys
@@ -9,7 +10,7 @@ import pytest
 from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
 import progiso
-from helpers.comparison import BLUE, GREEN, NESTED, OPAQUE, RED, Stage, show
+from helpers.comparison import BLUE, GREEN, NESTED, OPAQUE, RED, ComparisonScene, show
 from helpers.gl_objects import objects
 from helpers.images import blobs, make_image
 from helpers.programs import under_x
@@ -27,14 +28,14 @@ def image():
 
 
 def test_mappers_come_and_go(image):
-    """Two hundred of them, of all kinds: as many objects of OpenGL's as before, and no more memory."""
-    stage = Stage(True, (64, 48))
-    stage.look_at(image)
-    stage.render()
-    before = objects(stage.window)
-    keeper = stage.add(image, OPAQUE)
-    stage.render()
-    stage.volumes.clear()
+    """Two hundred of all kinds leave as many objects of OpenGL's as before, and no more memory."""
+    scene = ComparisonScene(ours=True, size=(64, 48))
+    scene.look_at(image)
+    scene.render()
+    before = objects(scene.window)
+    keeper = scene.add(image, OPAQUE)
+    scene.render()
+    scene.volumes.clear()
     keeper.VisibilityOff()
     kinds = [
         (OPAQUE, {}),
@@ -45,26 +46,26 @@ def test_mappers_come_and_go(image):
     samples = {"frame": [], "rss": []}
     for number in range(MAPPERS):
         surfaces, settings = kinds[number % len(kinds)]
-        volume = stage.add(image, surfaces, **settings)
-        stage.render()
+        volume = scene.add(image, surfaces, **settings)
+        scene.render()
         if number % 3:
-            volume.ReleaseGraphicsResources(stage.window)
-        stage.renderer.RemoveVolume(volume)
-        stage.volumes.clear()
+            volume.ReleaseGraphicsResources(scene.window)
+        scene.renderer.RemoveVolume(volume)
+        scene.volumes.clear()
         del volume
         if number % len(kinds) == len(kinds) - 1:
             samples["frame"].append(number)
             samples["rss"].append(resident_bytes())
             if number < MAPPERS / 4:
                 counted = objects(
-                    stage.window
+                    scene.window
                 )  # by then all shaders are compiled, which the keeper holds
-    assert objects(stage.window) == counted
+    assert objects(scene.window) == counted
     assert growth(samples, "rss", MAPPERS // 4) <= tolerances.GROWTH_BYTES
-    stage.renderer.RemoveVolume(keeper)
+    scene.renderer.RemoveVolume(keeper)
     del keeper
     gc.collect()
-    after = objects(stage.window)
+    after = objects(scene.window)
     assert after["Program"] < counted["Program"] <= before["Program"] + 60
     for kind in ("Buffer", "Texture", "Query", "Framebuffer", "Renderbuffer", "VertexArray"):
         assert after[kind] == before[kind], kind
@@ -72,23 +73,23 @@ def test_mappers_come_and_go(image):
 
 def test_fifty_volumes(image):
     """In one scene, in rows: each shows as it does alone, and they share their shaders."""
-    size, small = (300, 160), progiso.compress(make_image(blobs((12, 14, 10), 5, waves=1)), rate=16)
-    stage, alone = Stage(True, size), Stage(True, size)
+    size, small = (300, 160), progiso.compress(make_image(blobs((12, 14, 10), 5, waves=1)), 16)
+    scene, alone = ComparisonScene(ours=True, size=size), ComparisonScene(ours=True, size=size)
     places = [np.array((12 * (i % 10), 16 * (i // 10), 0)) for i in range(VOLUMES)]
     matrices = [np.block([[np.eye(3), place[:, None]], [np.zeros(3), 1]]) for place in places]
     colors = [(0.1 * (i % 10), 0.2 * (i // 10), 1 - 0.1 * (i % 10)) for i in range(VOLUMES)]
-    for scene in (stage, alone):
-        scene.clipping_range = 20, 400
-        scene.camera.SetParallelProjection(True)
-        scene.camera.SetParallelScale(48)
-        scene.camera.SetPosition(60, 38, 150)
-        scene.camera.SetFocalPoint(60, 38, 0)
+    for each in (scene, alone):
+        each.clipping_range = 20, 400
+        each.camera.SetParallelProjection(True)
+        each.camera.SetParallelScale(48)
+        each.camera.SetPosition(60, 38, 150)
+        each.camera.SetFocalPoint(60, 38, 0)
     counts = []
     for matrix, color in zip(matrices, colors):
-        stage.add(small, {0.1: (*color, 1.0)}, matrix)
-        if len(stage.volumes) in (1, VOLUMES):
-            picture = stage.picture()
-            counts.append(objects(stage.window))
+        scene.add(small, {0.1: (*color, 1.0)}, matrix)
+        if len(scene.volumes) in (1, VOLUMES):
+            picture = scene.picture()
+            counts.append(objects(scene.window))
     first, all_ = counts
     assert all_["Program"] == first["Program"], "each has its own shaders"
     assert all_["Buffer"] - first["Buffer"] <= (VOLUMES - 1) * first["Buffer"]
@@ -117,18 +118,19 @@ SCENES = [
 
 def frames(image, surfaces, settings):
     """Pictures of a window of its own, as the camera goes round."""
-    stage = Stage(True, (96, 80))
-    show(stage, image, surfaces, **settings).GetProperty().ShadeOn()
+    scene = ComparisonScene(ours=True, size=(96, 80))
+    show(scene, image, surfaces, **settings).GetProperty().ShadeOn()
     pictures = []
     for frame in range(FRAMES):
-        stage.look_at(image, frame % 4)
-        pictures.append(stage.picture())
-    stage.window.Finalize()
+        scene.look_at(image, frame % 4)
+        pictures.append(scene.picture())
+    scene.window.Finalize()
     return pictures
 
 
 def test_each_thread_has_its_window(image):
-    """Four threads, each with a window that it makes, renders and closes: the pictures of one thread alone."""
+    """Four threads, each with a window that it makes, renders and closes: the pictures of one
+    thread alone."""
     expected = [frames(image, *scene) for scene in SCENES]
     found = [None] * len(SCENES)
 
@@ -150,38 +152,39 @@ sys.path[:0] = {path!r}
 import numpy as np
 import progiso
 from helpers.scenes import CACHED
-from helpers.comparison import Stage
+from helpers.comparison import ComparisonScene
 from helpers.images import blobs, make_image
 from helpers.comparison import NESTED, OPAQUE, show
 from helpers.gl_objects import objects
 
-image = progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), rate=8)
-stages = [Stage(True), Stage(True)]
-stages[1].window.SetSharedRenderWindow(stages[0].window)
-for stage, surfaces in zip(stages, (OPAQUE, NESTED)):
-    show(stage, image, surfaces, **CACHED).GetProperty().ShadeOn()
-pictures = [stage.picture() for stage in stages]
-names = [objects(stage.window)["Buffer"] for stage in stages]
+image = progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), 8)
+scenes = [ComparisonScene(ours=True), ComparisonScene(ours=True)]
+scenes[1].window.SetSharedRenderWindow(scenes[0].window)
+for scene, surfaces in zip(scenes, (OPAQUE, NESTED)):
+    show(scene, image, surfaces, **CACHED).GetProperty().ShadeOn()
+pictures = [scene.picture() for scene in scenes]
+names = [objects(scene.window)["Buffer"] for scene in scenes]
 assert names[0] == names[1] > 20, "they share nothing"
 
 
 def check():
-    for stage, picture in zip(stages, pictures):
-        assert np.array_equal(stage.picture(), picture)
+    for scene, picture in zip(scenes, pictures):
+        assert np.array_equal(scene.picture(), picture)
 
 
 check()
-for stage in stages:
-    stage.volumes[0].ReleaseGraphicsResources(stage.window)
+for scene in scenes:
+    scene.volumes[0].ReleaseGraphicsResources(scene.window)
     check()
-    stage.window.Finalize()
+    scene.window.Finalize()
     check()
 print("good")
 """
 
 
 def test_windows_share_their_contexts():
-    """As VTK's windows do under X: the names of one's buffers are known in the other, and nobody deletes the other's."""
+    """As VTK's windows do under X: the names of one's buffers are known in the other, and nobody
+    deletes the other's."""
     if "OS" not in vtkRenderWindow().GetClassName():
         pytest.skip("this wants a display of Mesa's")
     program = SHARED.format(path=[path for path in sys.path if path])

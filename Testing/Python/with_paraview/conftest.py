@@ -8,7 +8,7 @@ import pytest
 
 @pytest.fixture(scope="session")
 def build(lacking):
-    """Find the build of the plugin; without one fail in continuous integration, and skip elsewhere."""
+    """Return the build of the plugin; without one fail in continuous integration, else skip."""
     folder = os.environ.get("PROGISO_PARAVIEW_BUILD")
     if not folder:
         lacking("PROGISO_PARAVIEW_BUILD does not name a build for ParaView")

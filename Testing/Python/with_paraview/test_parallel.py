@@ -82,7 +82,8 @@ def test_seams(shown, processes, case):
 
 
 def test_server(build, tmp_path):
-    """The server's processes draw; the client shows the same picture as without them, and all figures."""
+    """The server's processes draw; the client shows the same picture as without them, and all
+    figures."""
     under_x("pvpython", SCRIPTS / "remote.py", build, tmp_path, **MPI)
 
 

@@ -1,4 +1,5 @@
-"""The plugin, script by script: each of scripts/ checks what it shows and prints what it found as JSON."""
+"""The plugin, script by script: each of scripts/ checks what it shows and prints what it found as
+JSON."""
 
 import json
 import os

@@ -1,4 +1,5 @@
-"""The gallery's examples run, on less data and in small windows, and show something; their pictures are there."""
+"""The gallery's examples run, on less data and in small windows, and show something; their pictures
+are there."""
 
 import importlib.util
 

@@ -1,4 +1,5 @@
-"""pyvista's server backend in Jupyter: a real kernel runs a notebook, and what a browser would get are complete pictures."""
+"""pyvista's server backend in Jupyter: a real kernel runs a notebook, and what a browser would get
+are complete pictures."""
 
 import asyncio
 import importlib.util
@@ -41,7 +42,8 @@ plotter, prop = scene(0.1)
 plotter.show(jupyter_backend="server")
 """
 
-# As a window on a display, whose images grow: each render is to begin anew, and to end after a pass.
+# As a window on a display, whose images grow: each render is to begin anew, and to end after a
+# pass.
 ON_SCREEN = """
 plotter.render_window.SetOffScreenRendering(False)
 prop.GetMapper().SetTimeAllowance(0)
@@ -59,7 +61,7 @@ plotter.render()
 TELL = """
 import json
 camera = plotter.camera
-told = dict(position=camera.position, focal_point=camera.focal_point, up=camera.up, view_angle=camera.view_angle)
+told = {name: getattr(camera, name) for name in ("position", "focal_point", "up", "view_angle")}
 print(json.dumps(dict(camera=told, off_screen=bool(plotter.render_window.GetOffScreenRendering()))))
 """
 
@@ -122,7 +124,7 @@ def complete_picture(isovalue, camera):
 
 
 async def look(on_screen):
-    """Show, turn, and change the isovalue; return what came to the browser, and what was to come."""
+    """Show, turn, change the isovalue; return what came to the browser, and what was to come."""
     from helpers.browser import Browser
 
     found = []
@@ -149,8 +151,8 @@ async def look(on_screen):
 
 @pytest.mark.parametrize("on_screen", [False, True])
 def test_pictures_are_complete(lacking, on_screen):
-    """At first, when a mouse has turned the camera, and when a cell has changed the isovalue: also in a window that is not off-screen,
-    which trame renders once and no more."""
+    """At first, when a mouse has turned the camera, and when a cell has changed the isovalue: also
+    in a window that is not off-screen, which trame renders once and no more."""
     for module in ("nbclient", "ipykernel", "ipywidgets", "trame_pyvista", "nest_asyncio2"):
         if not importlib.util.find_spec(module):
             lacking(f"there is no {module}")

@@ -1,4 +1,7 @@
-"""In pyvistaqt's widget the image refines by Qt's event loop. (VTK's own widget for C++: Testing/Cxx/Qt.)"""
+"""In pyvistaqt's widget the image refines by Qt's event loop.
+
+(VTK's own widget for C++: Testing/Cxx/Qt.)
+"""
 
 import importlib.util
 import json

@@ -1,0 +1,71 @@
+"""Isosurfaces as triangles, held against VTK's FlyingEdges bit by bit."""
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
+
+import progiso
+from progiso import vtkZFPContour
+
+
+def contour_by(algorithm, image, isovalues):
+    """Contour with gradients, normals and scalars."""
+    algorithm.SetInputData(image)
+    for i, isovalue in enumerate(isovalues):
+        algorithm.SetValue(i, isovalue)
+    algorithm.SetComputeGradients(True)
+    algorithm.Update()
+    return algorithm.GetOutput()
+
+
+def contoured(image, isovalues, brick_size=64, threads=0):
+    algorithm = vtkZFPContour()
+    algorithm.SetBrickSize(brick_size)
+    algorithm.SetNumberOfThreads(threads)
+    return contour_by(algorithm, image, isovalues)
+
+
+def corners_of(surface):
+    """The corners of every triangle, as numbers of points."""
+    return vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+
+
+def points_of(surface):
+    """Every point's coordinates, normal, gradient and isovalue, in bits."""
+    if surface.GetNumberOfPoints() == 0:
+        return np.zeros((0, 10), np.uint32)
+    data = surface.GetPointData()
+    columns = [
+        surface.GetPoints().GetData(),
+        data.GetNormals(),
+        data.GetVectors(),
+        data.GetScalars(),
+    ]
+    columns = [vtk_to_numpy(array).reshape(surface.GetNumberOfPoints(), -1) for array in columns]
+    return np.hstack([column.astype(np.float32) for column in columns]).view(np.uint32)
+
+
+def canonical(surface):
+    """Points in order of their bits, and triangles in that of their corners' ranks among them."""
+    points, corners = points_of(surface), corners_of(surface)
+    order = np.lexsort(points.T)
+    points = points[order]
+    ranks = np.empty(len(points), int)
+    ranks[order] = np.cumsum(np.any(points != np.roll(points, 1, axis=0), axis=1))
+    triangles = ranks[corners]
+    return points, triangles[np.lexsort(triangles.T)]
+
+
+def check_same_surface(ours, theirs):
+    """The same points and triangles, whatever their order."""
+    for mine, expected in zip(canonical(ours), canonical(theirs)):
+        assert np.array_equal(mine, expected)
+
+
+def check_against_vtk(volume, isovalues, brick_size=64):
+    """Compare with FlyingEdges on the decoded image; return the surface."""
+    surface = contoured(volume, isovalues, brick_size)
+    check_same_surface(
+        surface, contour_by(vtkFlyingEdges3D(), progiso.decompress(volume), isovalues)
+    )
+    return surface

@@ -1,0 +1,135 @@
+"""Observers of the mapper and its window do anything: the mapper survives it."""
+
+import gc
+import time
+
+import numpy as np
+import pytest
+from vtkmodules.vtkCommonCore import reference
+
+from helpers.comparison import OPAQUE, ComparisonScene, paint, show
+from helpers.gl_hooks import gl_errors
+from helpers.images import blobs, make_image
+from helpers.messages import vtk_messages
+from helpers.scenes import CACHED
+
+
+class Trouble(Exception):
+    pass
+
+
+def observed(scene, event, does, on=None):
+    """Add an observer that does something once."""
+    done = []
+
+    def act(caller, _event):
+        if not done:
+            done.append(True)
+            does(caller)
+
+    (on or scene.mapper).AddObserver(event, act)
+    return done
+
+
+@pytest.fixture
+def drawn(image):
+    """A scene whose image takes many passes, and its picture."""
+    scene = ComparisonScene(ours=True)
+    show(scene, image, OPAQUE, **CACHED, SpeculationLimit=1).GetProperty().ShadeOn()
+    expected = scene.picture()
+    scene.mapper.EmptyCache()
+    time.sleep(0.21)  # windows ask observers whether to abort five times a second
+    return scene, expected
+
+
+@pytest.mark.parametrize("event", ["ProgressEvent", "StartEvent", "EndEvent", "AbortCheckEvent"])
+def test_an_exception_in_an_observer(drawn, event, capfd):
+    """It is told and goes no farther."""
+    scene, expected = drawn
+
+    def fail(_caller):
+        raise Trouble("of the observer's own")
+
+    target = {"ProgressEvent": scene.mapper, "StartEvent": scene.volumes[0]}.get(
+        event, scene.window
+    )
+    done = observed(scene, event, fail, target)
+    assert np.array_equal(scene.picture(), expected)
+    assert done and "Trouble: of the observer's own" in capfd.readouterr().err
+    assert np.array_equal(scene.picture(), expected)
+
+
+def test_an_observer_aborts(drawn):
+    """After some pass; the next render goes on from there."""
+    scene, expected = drawn
+    done = observed(scene, "AbortCheckEvent", lambda window: window.SetAbortRender(1), scene.window)
+    scene.window.Render()
+    assert done and not scene.mapper.GetConverged() and scene.mapper.GetCompletedFraction() < 1
+    assert scene.mapper.GetNumberOfGLErrors() == 0
+    assert np.array_equal(scene.picture(), expected)
+
+
+def other_window(scene, image):
+    """A window of its own for the scene's mapper."""
+    other = ComparisonScene(ours=True)
+    other.look_at(image)
+    volume = type(scene.volumes[0])()
+    volume.SetMapper(scene.mapper)
+    volume.SetProperty(scene.volumes[0].GetProperty())
+    other.renderer.AddVolume(volume)
+    other.renderer.ResetCameraClippingRange()
+    other.volumes.append(volume)
+    return other
+
+
+DEEDS = {
+    "renders": lambda scene, image: scene.window.Render(),
+    "renders another window": lambda scene, image: ComparisonScene(ours=True).render(),
+    "renders the mapper in another window": lambda scene, image: other_window(
+        scene, image
+    ).window.Render(),
+    "releases": lambda scene, image: scene.mapper.ReleaseGraphicsResources(scene.window),
+    "changes the input": lambda scene, image: scene.mapper.SetInputData(
+        make_image(blobs((20, 20, 20), 3))
+    ),
+    "changes the size": lambda scene, image: scene.window.SetSize(60, 50),
+    "changes the isovalue": lambda scene, image: paint(scene.volumes[0], {0.3: (1, 0, 0, 1)}),
+    "changes the budget": lambda scene, image: scene.mapper.SetMemoryBudget(1000),
+    "empties the cache": lambda scene, image: scene.mapper.EmptyCache(),
+    "picks": lambda scene, image: scene.mapper.GetHit(80, 64, [0] * 3, reference(0.0)),
+    "takes the mapper away": lambda scene, image: scene.volumes[0].SetMapper(None),
+    "takes the input away": lambda scene, image: scene.mapper.RemoveAllInputs(),
+}
+
+
+@pytest.mark.parametrize("event", ["ProgressEvent", "AbortCheckEvent", "StartEvent"])
+@pytest.mark.parametrize("deed", DEEDS)
+def test_an_observer_does_anything(drawn, image, event, deed):
+    """While the mapper renders: that may spoil the picture, but nothing else; undone, the picture
+    is right."""
+    scene, expected = drawn
+    mapper, volume, size = scene.mapper, scene.volumes[0], scene.window.GetSize()
+    targets = {"ProgressEvent": mapper, "AbortCheckEvent": scene.window, "StartEvent": volume}
+    done = observed(scene, event, lambda _: DEEDS[deed](scene, image), targets[event])
+    with vtk_messages():
+        scene.window.Render()
+    assert done
+    volume.SetMapper(mapper)
+    mapper.SetInputData(image)
+    mapper.SetMemoryBudget(0)
+    paint(volume, OPAQUE)
+    scene.window.SetSize(*size)
+    scene.render()
+    # VTK's meshes crash where they move to another window while they are rendered; OSMesa's windows
+    # are not drawn to after that
+    if "OS" not in scene.window.GetClassName() or "mapper in another" not in deed:
+        assert np.array_equal(scene.picture(), expected)
+
+
+def test_an_observer_drops_the_last_reference(drawn):
+    """The mapper lives on until its render has ended."""
+    scene, _ = drawn
+    observed(scene, "ProgressEvent", lambda _: scene.volumes.pop().SetMapper(None))
+    scene.window.Render()
+    gc.collect()
+    assert not gl_errors()
