@@ -59,8 +59,7 @@ def hold_by_torch():
 
 
 def hold_by_textures(window, most):
-    """Fill the memory with textures of a GiB, as long as they can be made, but for `most` at most.
-    """
+    """Fill the memory with textures of a GiB, as long as they can be made, but for `most` at most."""
     textures = []
     while len(textures) < most:
         texture = vtkTextureObject()

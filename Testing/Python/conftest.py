@@ -37,8 +37,10 @@ def pytest_addoption(parser):
 
 @pytest.fixture(scope="session")
 def lacking():
-    """Skip a test for want of something, or fail it in continuous integration, where nothing may be
-    wanting."""
+    """Return a function that skips a test for want of something.
+
+    In continuous integration, where nothing may be wanting, it fails the test.
+    """
 
     def missing(reason):
         (pytest.fail if os.environ.get("CI") else pytest.skip)(reason)

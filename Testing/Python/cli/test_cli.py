@@ -1,4 +1,4 @@
-"""``python -m progiso`` as its users call it."""
+"""`python -m progiso` as its users call it."""
 
 import json
 import os
@@ -20,7 +20,7 @@ from helpers.images import (
     samples_of,
 )
 from helpers.pictures import read_png
-from helpers.programs import call, run
+from helpers.programs import call_progiso, run_progiso
 from helpers.scenes import check_depth, check_memory, orbit
 from progiso.measure import tolerances
 from progiso.oracle.caster import Camera, cast
@@ -28,12 +28,12 @@ from progiso.oracle.caster import Camera, cast
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A folder with a plain volume and its compressed twin."""
+    """Return a folder with a plain volume and its compressed twin."""
     folder = tmp_path_factory.mktemp("cli")
     values = blobs((40, 36, 44), 3)
     progiso.save(make_image(values, spacing=(1, 0.8, 1.2), origin=(3, 2, 1)), folder / "plain.vti")
     values.tofile(folder / "blobs_44x36x40_float32.raw")
-    call(folder, "compress", "plain.vti", "packed.vti", "--rate", 6)
+    call_progiso(folder, "compress", "plain.vti", "packed.vti", "--rate", 6)
     return folder
 
 
@@ -47,7 +47,7 @@ def test_compress_is_the_librarys(folder):
 
 
 def test_decompress(folder):
-    call(folder, "decompress", "packed.vti", "unpacked.vti")
+    call_progiso(folder, "decompress", "packed.vti", "unpacked.vti")
     assert same_bits(
         samples_of(progiso.read(folder / "unpacked.vti")),
         reference_values(progiso.read(folder / "packed.vti")),
@@ -55,7 +55,7 @@ def test_decompress(folder):
 
 
 def test_compress_appended(folder):
-    call(folder, "compress", "plain.vti", "appended.vti", "--rate", 6, "--appended")
+    call_progiso(folder, "compress", "plain.vti", "appended.vti", "--rate", 6, "--appended")
     assert b'encoding="raw"' in (folder / "appended.vti").read_bytes()
     assert same_bits(
         reference_values(progiso.read(folder / "appended.vti")),
@@ -64,22 +64,29 @@ def test_compress_appended(folder):
 
 
 def test_bytes_of_files(folder):
-    """Of the whole file, and of the samples in it."""
-    text = call(folder, "compress", "plain.vti", "sized.vti", "--rate", 6)
+    """Sizes are given of the whole file, and of the samples in it."""
+    text = call_progiso(folder, "compress", "plain.vti", "sized.vti", "--rate", 6)
     size, stream = (folder / "sized.vti").stat().st_size, 10 * 9 * 11 * 64 * 6 // 8
     assert f": {size} bytes, {stream} of compressed samples, 6 bits" in text
-    assert json.loads(call(folder, "info", "sized.vti", "--json"))["file bytes"] == size > stream
+    assert (
+        json.loads(call_progiso(folder, "info", "sized.vti", "--json"))["file bytes"]
+        == size
+        > stream
+    )
 
 
 def test_info(folder):
-    plain, packed = call(folder, "info", "plain.vti"), call(folder, "info", "packed.vti")
+    plain, packed = (
+        call_progiso(folder, "info", "plain.vti"),
+        call_progiso(folder, "info", "packed.vti"),
+    )
     for text in (plain, packed):
         assert "44 36 40" in text and "field" in text
     assert re.search(r"rate: 6\b", packed) and "rate" not in plain
 
 
 def test_zfp_files(folder):
-    call(folder, "compress", "plain.vti", "packed.zfp", "--rate", 6)
+    call_progiso(folder, "compress", "plain.vti", "packed.zfp", "--rate", 6)
     subprocess.run(["zfp", "-q", "-h", "-z", "packed.zfp", "-o", "raw"], cwd=folder, check=True)
     assert same_bits(
         np.fromfile(folder / "raw", np.float32).reshape(40, 36, 44),
@@ -88,7 +95,7 @@ def test_zfp_files(folder):
 
 
 def test_notes(folder):
-    """What a user may not expect is said, on the side, and does not fail."""
+    """What a user may not expect is said on stderr, and is no failure."""
     for arguments, words in (
         (("compress", "plain.vti", "noted.zfp"), "no spacing"),
         (("contour", "packed.vti", "noted.vtp", "--isovalue", 1e6), "range"),
@@ -102,17 +109,19 @@ def test_notes(folder):
             "--component 1 is ignored",
         ),
     ):
-        done = run(folder, *arguments)
+        done = run_progiso(folder, *arguments)
         assert done.returncode == 0, done.stderr
         assert "note: " in done.stderr and words in done.stderr
-    quiet = run(folder, "render", "packed.vti", "--isovalue", 0.1, "--size", "64x48", "--rate", 6)
+    quiet = run_progiso(
+        folder, "render", "packed.vti", "--isovalue", 0.1, "--size", "64x48", "--rate", 6
+    )
     assert quiet.stderr == ""
 
 
 def render(folder, file, *arguments):
     """Render; return the depth image and the statistics."""
     out = ("--output", "out.png", "--depth", "out.npy", "--stats", "out.json")
-    call(folder, "render", file, "--isovalue", 0.1, *out, *arguments)
+    call_progiso(folder, "render", file, "--isovalue", 0.1, *out, *arguments)
     assert (folder / "out.png").read_bytes()[:4] == b"\x89PNG"
     return np.load(folder / "out.npy"), json.loads((folder / "out.json").read_text())
 
@@ -134,7 +143,7 @@ def test_render(folder):
 
 
 def test_render_several_isovalues(folder):
-    """The outer surface is seen first, in its colour; more surfaces cover more pixels."""
+    """The outer surface hides the inner; more surfaces cover more pixels."""
     arguments = ("packed.vti", "--size", "200x150", "--orbit", "1/5", "--background", "black")
     inner, _ = render(folder, *arguments, "--color", "#ff0000")
     look = ("--color", "#ff0000", "--color", "#00ff00", "--opacity", 1, "--opacity", 0.5)
@@ -149,7 +158,7 @@ def test_render_several_isovalues(folder):
 
 
 def test_speculation_and_memory_budget_change_no_depth(folder):
-    """Speculation only saves passes; with little memory the image is the same."""
+    """Speculation saves passes, and a small budget costs some; the image is the same."""
     progiso.save(
         progiso.compress(make_image(blobs((90, 80, 100), 3, waves=6)), rate=6), folder / "large.vti"
     )
@@ -212,7 +221,7 @@ def test_render_in_parallel_projection(folder):
 
 @pytest.mark.parametrize("suffix", [".mha", ".nii.gz", ".vtk", ".nrrd"])
 def test_other_formats(folder, suffix):
-    """Formats that others write read as the same samples in the same place."""
+    """Files that others wrote are read as the same samples in the same place."""
     values = marschner_lobb(12)
     if suffix in (".mha", ".nii.gz"):
         image = make_image(values, spacing=(1, 0.5, 2), origin=(4, 5, 6))
@@ -230,10 +239,10 @@ def test_other_formats(folder, suffix):
             "axis mins: 4 5 6\nencoding: raw\nendian: little\n\n"
         )
         (folder / "volume.nrrd").write_bytes(header.encode() + values.tobytes())
-    about = json.loads(call(folder, "info", f"volume{suffix}", "--json"))
+    about = json.loads(call_progiso(folder, "info", f"volume{suffix}", "--json"))
     assert about["dimensions"] == [12, 12, 12]
     assert about["spacing"] == pytest.approx([1, 0.5, 2])
-    call(folder, "compress", f"volume{suffix}", "other.vti", "--rate", 32)
+    call_progiso(folder, "compress", f"volume{suffix}", "other.vti", "--rate", 32)
     assert np.abs(reference_values(progiso.read(folder / "other.vti")) - values).max() < 1e-6
 
 
@@ -283,7 +292,7 @@ def test_errors_are_one_line(folder, case):
     (folder / "broken.vti").write_text("<VTKFile")
     (folder / "some.xyz").write_text("?")
     (folder / "text.txt").write_text("What VTK's reader of .hdr pictures takes for its own.\n" * 50)
-    lines = call(folder, *arguments, succeeds=False).strip().splitlines()
+    lines = call_progiso(folder, *arguments, succeeds=False).strip().splitlines()
     assert len(lines) == 1, lines
     assert "error" in lines[0] and word in lines[0]
     assert "Traceback" not in lines[0]
@@ -294,7 +303,7 @@ def test_errors_are_one_line(folder, case):
 
 
 def gyroid(n, k):
-    """Compute gyroid and noise as their definition says, without any of the project's shortcuts."""
+    """Compute gyroid and noise by their definition, without any of the project's shortcuts."""
     z, y, x = np.meshgrid(*[np.linspace(-1, 1, n)] * 3, indexing="ij")
     w = np.pi * k
     field = (
@@ -329,7 +338,7 @@ def test_gyroid_is_as_defined(tmp_path):
 def test_generators_make_what_can_be_shown(folder):
     from progiso.data import GENERATORS
 
-    listed = call(folder, "data")
+    listed = call_progiso(folder, "data")
     environment = dict(os.environ, XDG_CACHE_HOME=str(folder / "cache"))
     for name, generator in GENERATORS.items():
         assert name in listed

@@ -34,8 +34,8 @@ def test_as_pyvista_wraps_them():
 
 @pytest.mark.parametrize("kind", ["?", "u1", "i2", ">i4", "f2", "<f4", ">f4", "f8", "g"])
 def test_types(kind):
-    """VTK's own, in either order of bytes, and those that it has not: truth values, half and long
-    double precision."""
+    """Take VTK's own types in either byte order, and those that VTK lacks: truth values, half and
+    long double precision."""
     array = (10 * FIELD.T).astype(kind)
     expected = progiso.compress(make_image(array.T.astype(np.float32)), rate=32)
     assert same_bits(reference_values(progiso.compress(array, rate=32)), reference_values(expected))

@@ -38,7 +38,7 @@ def write_nrrd(
     byte_skip=0,
     line_skip=0,
 ):
-    """Fields, then what `before` says, then the samples, encoded."""
+    """Write the fields, then what `before` says, then the samples, encoded."""
     encode = {"raw": bytes, "gzip": gzip.compress, "bzip2": bz2.compress}[encoding]
     sizes, axes = "9 7 13", "(1,0,0) (0,2,0) (0,0.5,3)"
     if components > 1:
@@ -170,7 +170,7 @@ FILES = {
 
 @pytest.mark.parametrize("case", FILES)
 def test_equals_reading_whole(case, tmp_path, monkeypatch):
-    """Stream, metadata and geometry; whatever the depth of a slab, and without `read`."""
+    """Stream, metadata and geometry are the same, whatever a slab's depth, and without `read`."""
     write, options = FILES[case]
     path = write(tmp_path, **options)
     component = options.get("components", 1) - 1
@@ -194,7 +194,7 @@ def test_equals_reading_whole(case, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("suffix", [".vti", ".nii.gz"])
 def test_other_files_are_read_whole(suffix, tmp_path):
-    """Formats of VTK, and a compressed file that begins with the last slice."""
+    """So are VTK's formats, and a compressed file that begins with the last slice."""
     if suffix == ".vti":
         path = tmp_path / "volume.vti"
         progiso.save(make_image(values_as("i2")), path)
@@ -217,7 +217,7 @@ def test_progress_rises(tmp_path, monkeypatch):
 
 
 def cut(path, keep):
-    """Keep a part of a file."""
+    """Keep a part of a file; return its path."""
     data = path.read_bytes()
     path.write_bytes(data[: int(len(data) * keep)])
     return path
@@ -239,7 +239,7 @@ BAD_FILES = {
 
 @pytest.mark.parametrize("case", BAD_FILES)
 def test_damaged_files_are_named(case, tmp_path):
-    """And the command line, which says the same in one line, leaves nothing."""
+    """The command line says the same in one line, and leaves no file."""
     write, words = BAD_FILES[case]
     path = write(tmp_path)
     with pytest.raises(ValueError, match=f"{path.name}.*({words})"):
@@ -279,7 +279,7 @@ def test_errors_name_the_argument(tmp_path):
 
 @pytest.mark.parametrize("kind", [".vti", ".zfp"])
 def test_interrupted_writing_keeps_what_was_there(kind, tmp_path, monkeypatch):
-    """Ctrl-C in the middle of writing: the file of before is still there, nothing else."""
+    """After Ctrl-C in the middle of writing the old file is still there, and no other."""
     from progiso import cli
 
     target = tmp_path / f"out{kind}"

@@ -1,5 +1,4 @@
-"""Isosurfaces as triangles: those of VTK's FlyingEdges on the decoded image, in every bit, brick by
-brick."""
+"""Isosurfaces as triangles are VTK's FlyingEdges' of the decoded image, in every bit."""
 
 import numpy as np
 import pytest
@@ -9,7 +8,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
 
 import progiso
-from helpers.images import blobs, make_image, marschner_lobb, noise
+from helpers.images import blobs, make_image, marschner_lobb, noise, samples_of
 from helpers.messages import vtk_messages
 from helpers.surfaces import (
     check_against_vtk,
@@ -25,7 +24,7 @@ ROTATION = np.linalg.qr(np.random.default_rng(0).normal(size=(3, 3)))[0]
 
 
 def open_edges(surface):
-    """Ends of the edges that only one triangle has."""
+    """Return the ends of the edges that only one triangle has."""
     corners = corners_of(surface)
     edges = np.sort(np.vstack([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]]), axis=1)
     edges, uses = np.unique(edges, axis=0, return_counts=True)
@@ -37,8 +36,8 @@ def open_edges(surface):
 
 @pytest.mark.parametrize("name", SCANS)
 def test_scans(name):
-    """All that a scan's catalogue entry proposes, at once."""
-    volume = progiso.compress(progiso.read(fetch(name)), rate=8)
+    """All isovalues that a scan's catalogue entry proposes, at once."""
+    volume = progiso.compress(progiso.read(fetch(name)), 8)
     surface = check_against_vtk(volume, list(SCANS[name].isovalues.values()))
     assert surface.GetNumberOfPolys() > 500_000
 
@@ -68,7 +67,7 @@ def test_random_fields(shape, kind, seed, rate, quantiles, brick_size, spacing, 
 
 @pytest.mark.parametrize("direction", [np.eye(3), ROTATION, np.diag([1, -1, 1])])
 def test_world_coordinates(direction):
-    """Extent, origin, spacing and direction, as FlyingEdges has them."""
+    """Extent, origin, spacing and direction are taken as FlyingEdges takes them."""
     image = make_image(
         blobs((30, 28, 34), 1),
         spacing=(0.5, 2, 1),
@@ -92,7 +91,7 @@ def test_cell_data_lie_in_the_centres():
 
 
 def test_closed_where_the_volume_is():
-    """Edges of the surface lie in the volume's faces; a sphere has none."""
+    """Open edges of the surface lie in the volume's faces; a sphere inside has none."""
     sphere = -np.linalg.norm(np.stack(np.meshgrid(*[np.linspace(-1, 1, 40)] * 3)), axis=0)
     surface = contoured(progiso.compress(make_image(sphere), rate=10), [-0.7], 8)
     assert surface.GetNumberOfPolys() > 1000 and len(open_edges(surface)) == 0
@@ -129,6 +128,22 @@ def test_values_as_in_vtks_filters():
     time = ours.GetMTime()
     ours.SetNumberOfContours(1)
     assert ours.GetMTime() > time
+
+
+def test_values_survive_the_round_trip():
+    """The surface lies where the decoded samples say: every point's interpolated value is the
+    isovalue."""
+    volume = progiso.compress(make_image(blobs((24, 25, 26), 7)), 6)
+    values = samples_of(progiso.decompress(volume))
+    points = vtk_to_numpy(contoured(volume, [0.2], 8).GetPoints().GetData()).astype(float)
+    low = np.floor(points).astype(int)
+    part = points - low
+    axis = part.argmax(axis=1)
+    high = low.copy()
+    high[np.arange(len(low)), axis] += part.max(axis=1) > 0
+    t = part.max(axis=1)
+    found = (1 - t) * values[tuple(low.T[::-1])] + t * values[tuple(high.T[::-1])]
+    assert len(found) > 1000 and np.abs(found - 0.2).max() < 1e-5
 
 
 # --- plain images ---------------------------------------------------------------------------------

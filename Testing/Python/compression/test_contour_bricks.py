@@ -1,4 +1,4 @@
-"""A volume is contoured brick by brick, by several threads: neither shows; memory is bounded."""
+"""A volume is contoured brick by brick and by several threads: neither shows; memory is bounded."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from progiso import vtkZFPContour
 
 
 def test_threads_do_not_show():
-    """Not even in the order of points and triangles, nor does the backend."""
+    """Neither threads nor VTK's backend change even the order of points and triangles."""
     volume = progiso.compress(make_image(blobs((50, 40, 60), 4, waves=6)), 6)
     first = contoured(volume, [0.1, 0.3], 8, threads=1)
     before = vtkSMPTools.GetBackend()
@@ -29,8 +29,11 @@ def test_threads_do_not_show():
 
 @pytest.mark.parametrize("threads", [1, 2, 4])
 def test_memory_is_that_of_a_brick_a_thread(threads):
-    """Whatever the volume's size: 32 cells, a sample more, one on either side, in whole blocks, is
-    40 samples a side."""
+    """Memory does not depend on the volume's size.
+
+    A brick of 32 cells takes a sample more, one on either side, and whole blocks: 40 samples a
+    side.
+    """
     algorithm = vtkZFPContour()
     algorithm.SetBrickSize(32)
     algorithm.SetNumberOfThreads(threads)
@@ -43,7 +46,7 @@ def test_memory_is_that_of_a_brick_a_thread(threads):
 
 
 def test_bricks_are_decoded_when_they_hold_an_isovalue():
-    """Every brick once, then those only that other isovalues need."""
+    """Every brick is decoded once, then only those that another isovalue needs."""
     z = np.broadcast_to(np.arange(65.0)[:, None, None], (65, 33, 33))
     algorithm = vtkZFPContour()
     algorithm.SetBrickSize(16)

@@ -1,23 +1,14 @@
 """`progiso contour`: the command line, and the formats that it writes."""
 
-import os
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 import progiso
-from helpers.images import blobs, make_image, noise, samples_of
-from helpers.surfaces import contoured, corners_of
-
-
-def call(folder, *arguments):
-    """Run `progiso contour` in a folder."""
-    command = [sys.executable, "-m", "progiso", "contour", *map(str, arguments)]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, env=os.environ)
+from helpers.images import blobs, make_image, noise
+from helpers.programs import run_progiso
+from helpers.surfaces import corners_of
 
 
 def test_command_line(tmp_path):
@@ -27,7 +18,9 @@ def test_command_line(tmp_path):
     expected = progiso.contour(progiso.compress(image, 6), [0.1, 0.3])
     for arguments in (["packed.vti"], ["plain.vti", "--rate", 6]):
         name, *rest = arguments
-        done = call(tmp_path, name, "out.vtp", "--isovalue", 0.1, "--isovalue", 0.3, *rest)
+        done = run_progiso(
+            tmp_path, "contour", name, "out.vtp", "--isovalue", 0.1, "--isovalue", 0.3, *rest
+        )
         assert done.returncode == 0, done.stderr
         reader = vtkXMLPolyDataReader()
         reader.SetFileName(str(tmp_path / "out.vtp"))
@@ -43,7 +36,7 @@ def test_command_line(tmp_path):
 
 @pytest.mark.parametrize("suffix", [".vtp", ".stl", ".ply", ".obj"])
 def test_formats(tmp_path, suffix):
-    """What another library reads back; STL has no shared points."""
+    """Another library reads back what was written; STL has no shared points."""
     pyvista = pytest.importorskip("pyvista")
     surface = progiso.contour(make_image(blobs((12, 12, 12))), 0.1)
     progiso.save_surface(surface, tmp_path / f"surface{suffix}")
@@ -75,23 +68,7 @@ FAILURES = {
 def test_errors_are_one_line(tmp_path, case):
     arguments, word = FAILURES[case]
     progiso.save(make_image(noise((4, 4, 4))), tmp_path / "plain.vti")
-    done = call(tmp_path, *arguments)
+    done = run_progiso(tmp_path, "contour", *arguments)
     lines = done.stderr.strip().splitlines()
     assert done.returncode != 0 and len(lines) == 1 and word in lines[0], done.stderr
     assert [p.name for p in tmp_path.iterdir()] == ["plain.vti"]
-
-
-def test_values_survive_the_round_trip():
-    """The surface lies where the decoded samples say: every point's interpolated value is the
-    isovalue."""
-    volume = progiso.compress(make_image(blobs((24, 25, 26), 7)), 6)
-    values = samples_of(progiso.decompress(volume))
-    points = vtk_to_numpy(contoured(volume, [0.2], 8).GetPoints().GetData()).astype(float)
-    low = np.floor(points).astype(int)
-    part = points - low
-    axis = part.argmax(axis=1)
-    high = low.copy()
-    high[np.arange(len(low)), axis] += part.max(axis=1) > 0
-    t = part.max(axis=1)
-    found = (1 - t) * values[tuple(low.T[::-1])] + t * values[tuple(high.T[::-1])]
-    assert len(found) > 1000 and np.abs(found - 0.2).max() < 1e-5

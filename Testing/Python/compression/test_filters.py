@@ -119,8 +119,7 @@ def test_extreme_values(scale):
 
 
 def test_blocks_that_overflow_in_zfp_are_zero():
-    """zfp's scale factor overflows for blocks below 3e-30: where the rest is larger they become
-    what they are beside it."""
+    """zfp's scale factor overflows for blocks below 3e-30; beside larger values they become 0."""
     values = noise((8, 8, 8), 5)
     values[:4, :4, :4] *= np.float32(1e-35)
     restored = samples_of(progiso.decompress(progiso.compress(make_image(values), rate=16)))

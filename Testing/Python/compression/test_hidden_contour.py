@@ -12,8 +12,7 @@ from helpers.images import make_image, noise
 
 @pytest.mark.parametrize("make", KINDS)
 def test_triangles_are_those_of_visible_cells(make):
-    """Of the surface without holes those triangles are left that lie in visible cells, with no
-    point too many."""
+    """Of the surface without holes the triangles in visible cells are left, and their points."""
     image, hidden = make()
     holes = progiso.contour(image, ISOVALUE, gradients=True)
     bare = vtkImageData()
@@ -31,7 +30,7 @@ def test_triangles_are_those_of_visible_cells(make):
 
 
 def corners_of(surface):
-    """The triangles' corners [triangle, corner, axis]."""
+    """Return the triangles' corners [triangle, corner, axis]."""
     points = vtk_to_numpy(surface.GetPoints().GetData())
     return points[vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)]
 

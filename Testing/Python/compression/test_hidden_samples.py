@@ -77,13 +77,13 @@ def check_flags(data, hidden, flag):
 
 
 def test_the_version_tells():
-    """A reader from before there were masks refuses a volume that has one, and takes all others."""
+    """Readers older than masks refuse a volume that has one, and take all others."""
     assert metadata(progiso.compress(make_image(noise(SHAPE))), "Version")[0] == 1
     assert metadata(nan_samples()[0], "Version")[0] == 2
 
 
 def test_hidden_values_cost_nothing():
-    """Where NaN, huge values and zeros are hidden the rest is kept alike, and about as well as
+    """Whether NaN, huge values or zeros are hidden, the rest is kept alike, and about as well as
     without a hole."""
     values, hidden = blobs(SHAPE, 3), ball(SHAPE, 9)
     errors = []

@@ -20,7 +20,7 @@ SIDES = (512, 512, 400)  # of float32: 400 MiB, which take no place on the disk
 
 
 def sparse(folder, kind):
-    """A file of zeros behind a header; compressed ones are of little size too."""
+    """Write a file of zeros behind a header; also a compressed one is small."""
     size = 4 * int(np.prod(SIDES))
     sides = " ".join(map(str, SIDES))
     if kind == ".raw":
@@ -71,8 +71,8 @@ print(peak() - before)
 
 @pytest.mark.parametrize("kind", [".raw", ".nrrd", ".nrrd gzip", ".mha", ".nii"])
 def test_memory_is_that_of_slabs(kind, tmp_path):
-    """400 MiB of samples and 12.5 MiB of stream in less than 130; 45 are usual, 82 of gzip; reading
-    whole takes 414."""
+    """400 MiB of samples and 12.5 MiB of stream take less than 130 MiB. 45 are usual, 82 with gzip;
+    reading the whole file takes 414."""
     path = sparse(tmp_path, kind)
     arguments = compress_command(path, tmp_path / "out.vti")[3:]
     done = subprocess.run(
@@ -85,7 +85,7 @@ def test_memory_is_that_of_slabs(kind, tmp_path):
 
 
 def is_reading(process, path):
-    """Whether a process holds a file open."""
+    """Tell whether a process holds a file open."""
     try:
         return any(
             link.resolve() == path for link in pathlib.Path(f"/proc/{process.pid}/fd").iterdir()
@@ -96,7 +96,7 @@ def is_reading(process, path):
 
 @pytest.mark.skipif(not os.path.isdir("/proc/self/fd"), reason="tells when to interrupt by /proc")
 def test_interrupted_leaves_nothing(tmp_path):
-    """Ctrl-C while the file is read."""
+    """Ctrl-C while the file is read leaves no output."""
     source = tmp_path / "large_1024x1024x1024_float32.raw"
     with open(source, "wb") as file:
         file.truncate(4 * 1024**3)

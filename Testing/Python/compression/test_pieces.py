@@ -46,7 +46,7 @@ def test_pieces_hold_the_blocks_of_the_whole(pieces, cells):
 
 @pytest.mark.parametrize("bits", [9, 64, 333, 2048])
 def test_cropping_keeps_blocks_as_they_are(bits):
-    """Rows of blocks that begin at any bit of a word."""
+    """Rows of blocks may begin at any bit of a word."""
     compressed = progiso.compress(
         make_image(noise((21, 18, 30), 5), extent_start=(3, -4, 5)), bits / 64
     )

@@ -1,4 +1,4 @@
-"""The least rate for a tolerance: that it keeps it, and that a bit less a block does not."""
+"""The least rate for a tolerance keeps it, and a bit less a block does not."""
 
 import numpy as np
 import pytest
@@ -8,13 +8,13 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import progiso
 from helpers.images import blobs, make_image, marschner_lobb, noise, reference_values
-from helpers.programs import call
+from helpers.programs import call_progiso
 from progiso import rates
 
 
 def error_at(values, rate, **choice):
-    """Largest error of a visible sample at a rate, by libzfp."""
-    image = progiso.compress(make_image(values), rate=rate, **choice)
+    """Return the largest error of a visible sample at a rate, by libzfp."""
+    image = progiso.compress(make_image(values), rate, **choice)
     about = progiso.describe(image)
     decoded = about["offset"] + about["scale"] * reference_values(image).astype(float)
     with np.errstate(invalid="ignore"):
@@ -24,7 +24,7 @@ def error_at(values, rate, **choice):
 
 
 def check_least(values, tolerance, **options):
-    """Find the rate; see to it that it is the least of its neighbourhood; return it."""
+    """Find the rate, check that no neighbouring lower one would do, and return it."""
     rate = progiso.least_rate(make_image(values), tolerance, **options)
     assert rate * 64 == int(rate * 64) and 9 / 64 <= rate <= 32
     choice = {"mask_nan": options.get("mask_nan", False)}
@@ -61,8 +61,8 @@ def test_finer_takes_more():
 
 @pytest.mark.parametrize("depth", [4, 13, 32, 33, 47])
 def test_some_slices_at_a_time(depth, monkeypatch):
-    """However many, also where a single one is left over: the rate of the volume in one piece, or
-    of a neighbour that fits."""
+    """However the slices are dealt, also where one is left over, the rate is that of the whole
+    volume, or a neighbour that fits."""
     values = (
         noise((depth, 11, 14), depth) * np.linspace(0.1, 3, depth, dtype=np.float32)[:, None, None]
     )
@@ -127,7 +127,8 @@ def test_tolerance_must_be_positive(tolerance):
 
 
 def test_what_no_rate_keeps():
-    """Differences that float32 does not have; the message tells what can be kept, and that can."""
+    """Differences that float32 does not have cannot be kept; the message says what can, and that
+    works."""
     values = np.append(1e8 + noise((8, 8, 7)).astype(float), np.zeros((8, 8, 1)), axis=2)
     with pytest.raises(
         ValueError, match="no rate keeps the samples within 0.001: at 32 bits some are off by"
@@ -161,15 +162,17 @@ def test_errors_name_what_is_wrong(image, options, error, message):
 
 
 def test_command_line(tmp_path):
-    """What it prints is what `compress` takes."""
+    """`compress` takes what the command prints."""
     values = blobs((20, 22, 24), 3)
     values.tofile(tmp_path / "blobs_24x22x20_float32.raw")
-    rate = call(tmp_path, "rate", "blobs_24x22x20_float32.raw", "--tolerance", 0.001).strip()
+    rate = call_progiso(
+        tmp_path, "rate", "blobs_24x22x20_float32.raw", "--tolerance", 0.001
+    ).strip()
     assert float(rate) == check_least(values, 0.001)
-    call(tmp_path, "compress", "blobs_24x22x20_float32.raw", "blobs.vti", "--rate", rate)
+    call_progiso(tmp_path, "compress", "blobs_24x22x20_float32.raw", "blobs.vti", "--rate", rate)
     volume = progiso.read(tmp_path / "blobs.vti")
     assert progiso.describe(volume)["rate"] == float(rate)
-    relative = call(
+    relative = call_progiso(
         tmp_path, "rate", "blobs_24x22x20_float32.raw", "--tolerance", 0.001, "--relative"
     ).strip()
     assert float(relative) == check_least(values, 0.001, relative=True)
@@ -177,7 +180,9 @@ def test_command_line(tmp_path):
         (("--tolerance", 0), "tolerance must be a number above 0"),
         (("--tolerance", 1e-12), "no rate keeps the samples"),
     ):
-        assert message in call(
+        assert message in call_progiso(
             tmp_path, "rate", "blobs_24x22x20_float32.raw", *options, succeeds=False
         )
-    assert "--tolerance" in call(tmp_path, "rate", "blobs_24x22x20_float32.raw", succeeds=False)
+    assert "--tolerance" in call_progiso(
+        tmp_path, "rate", "blobs_24x22x20_float32.raw", succeeds=False
+    )

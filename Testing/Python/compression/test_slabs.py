@@ -57,7 +57,7 @@ def test_sample_types(kind):
 
 
 def test_memory_in_another_order():
-    """Views with strides, and slices instead of slabs."""
+    """Views with strides, and slices in place of slabs, are taken too."""
     values = noise((7, 6, 12), 4)
     expected = progiso.compress(make_image(values[::-1, :, ::2], "name"), rate=8)
     check_same(
@@ -162,7 +162,7 @@ def test_interrupted_leaves_nothing(tmp_path):
 
 
 def test_command_line(tmp_path):
-    """Prints the path of a file that holds what the library makes."""
+    """The command prints the path of a file that holds what the library makes."""
     command = [
         sys.executable,
         "-m",
@@ -201,8 +201,10 @@ print(peak() - before)
 
 
 def test_memory_is_bounded_by_slabs(tmp_path):
-    """320 MiB of samples and 10 MiB of stream, made in less than a third of that; about 52 MiB are
-    usual."""
+    """320 MiB of samples and 10 MiB of stream are made in less than a third of that.
+
+    About 52 MiB are usual.
+    """
     done = subprocess.run(
         [sys.executable, "-c", MEASURED, tmp_path], capture_output=True, text=True, check=True
     )

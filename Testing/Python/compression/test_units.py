@@ -1,5 +1,7 @@
-"""Streams in units of their own, where float32 cannot hold the samples: who reads them reads the
-samples (see also test_filters.py and the rows of test_verify.py)."""
+"""Streams in units of their own, where float32 cannot hold the samples.
+
+Whoever reads them reads the samples. See also test_filters.py and the rows of test_verify.py.
+"""
 
 import numpy as np
 import pytest
@@ -28,8 +30,8 @@ def plain():
 
 @pytest.fixture(scope="module")
 def shifted():
-    """The same field on a large value, of which float32 would leave nothing."""
-    image = progiso.compress(make_image(OFFSET + SCALE * FIELD), rate=32)
+    """Add a value so large that float32 would leave nothing of the field."""
+    image = progiso.compress(make_image(OFFSET + SCALE * FIELD), 32)
     assert progiso.describe(image)["offset"] != 0
     return image
 
@@ -40,7 +42,7 @@ def isovalue_of(isovalue):
 
 @pytest.mark.parametrize("settings", [{}, CACHED])
 def test_hits(plain, shifted, settings):
-    """A hit is where the plain field's is, and tells the isovalue."""
+    """A hit is where the plain field's is, and has the isovalue in the samples' units."""
     camera = orbit(reference_volume(plain), 1, 4)
     scenes = [
         Scene(image, at, camera, SIZE, **settings)
@@ -58,7 +60,7 @@ def test_hits(plain, shifted, settings):
 
 
 def test_colours(plain, shifted):
-    """The volume that gives the colours may have units, too."""
+    """Also the volume that gives the colours may have units."""
     pictures = []
     for image, low, high in ((plain, -1, 1), (shifted, isovalue_of(-1), isovalue_of(1))):
         colors = vtkColorTransferFunction()
@@ -79,7 +81,7 @@ def test_colours(plain, shifted):
 
 
 def test_contour(plain, shifted):
-    """The same mesh; scalars are the isovalue, and gradients are of the samples."""
+    """The mesh is the same; its scalars are the isovalue, its gradients those of the samples."""
     meshes = [
         progiso.contour(image, at, gradients=True)
         for image, at in ((plain, 0.1), (shifted, isovalue_of(0.1)))

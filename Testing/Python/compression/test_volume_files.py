@@ -101,7 +101,7 @@ def test_reader_against_the_tool(tmp_path, header, rate, lacking):
 @pytest.mark.parametrize("header", [False, True])
 @pytest.mark.parametrize("rate", [9 / 64, 7.3, 32])
 def test_reader_puts_parts_together(tmp_path, header, rate):
-    """Files are read in parts of a quarter of a MiB, by several threads."""
+    """Files are read by several threads in parts of a quarter of a MiB."""
     compressed = progiso.compress(make_image(noise((61, 62, 65), 8)), rate)
     writer = vtkZFPWriter()
     writer.SetInputData(compressed)
@@ -115,7 +115,7 @@ def test_reader_puts_parts_together(tmp_path, header, rate):
 
 
 def test_vti_with_appended_data(tmp_path):
-    """Raw bytes behind the XML hold the same, in less."""
+    """Raw bytes after the XML hold the same in less space."""
     compressed = progiso.compress(
         make_image(noise((30, 31, 32)), origin=(1, 2, 3), extent_start=(5, 6, 7)), 8
     )

@@ -29,8 +29,10 @@ def blanked(kind):
 
 
 def visible_triangles(image):
-    """VTK's triangles of the cells that VTK calls visible; of cell data, of those between the
-    centres of such."""
+    """Return VTK's triangles in the cells that VTK calls visible.
+
+    Of cell data, those between the centres of such cells.
+    """
     seen = np.array([image.IsCellVisible(i) for i in range(image.GetNumberOfCells())], bool)
     centres = image.GetCellData().GetArray("field")
     part = make_image(
@@ -60,7 +62,7 @@ def visible_triangles(image):
 
 @pytest.mark.parametrize("kind", ["points", "cells", "cell data"])
 def test_blanking(kind):
-    """VTK's mapper leaves out half a voxel more around what is hidden, so VTK's triangles are the
+    """VTK's mapper leaves out half a voxel more around what is hidden: its triangles are the
     reference."""
     grid = blanked(kind)
     ours, theirs = ComparisonScene(ours=True), ComparisonScene(ours=False)

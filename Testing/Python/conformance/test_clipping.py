@@ -37,7 +37,7 @@ def test_clipping_planes(image, surfaces, normals, matrix):
 
 
 def test_a_clipping_plane_moves(image):
-    """Also by a change of the plane itself, which the mapper is not told of."""
+    """A change of the plane itself, of which the mapper is not told, counts too."""
     cutters = [next(planes((1, 0, 0))) for _ in range(2)]
     scenes = both(lambda scene: show(scene, image))
     first = scenes[0].picture()
@@ -66,8 +66,8 @@ def test_clipped_and_lit(cube):
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
 @pytest.mark.parametrize("regions", REGIONS)
 def test_cropping(image, regions, surfaces):
-    """Where a ray comes into a region from outside VTK's mapper may show a surface that is not
-    there: that does not count."""
+    """Where a ray enters a region from outside VTK's mapper may show a surface that is not there;
+    those pixels do not count."""
 
     def build(scene):
         mapper = show(scene, image, surfaces).GetMapper()
@@ -84,7 +84,7 @@ def test_cropping(image, regions, surfaces):
 
 
 def test_cropping_and_clipping_of_a_moved_volume(image):
-    """The regions turn with the volume, the clipping plane stays: by the caster's crossings."""
+    """The regions turn with the volume, the clipping plane stays: as the caster's crossings."""
     scene = ComparisonScene(ours=True)
     mapper = show(scene, image, NESTED, matrix=TURNED).GetMapper()
     mapper.CroppingOn()

@@ -24,8 +24,10 @@ from progiso.measure import tolerances
 
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
 def test_cell_data(surfaces):
-    """Values of cells are samples at their centres; VTK's draws them to the cells' outer faces,
-    ours between the centres."""
+    """Cells' values are samples at their centres.
+
+    VTK's mapper draws them up to the cells' outer faces, ours between the centres.
+    """
     compressed = progiso.compress(
         make_image(blobs(SHAPE, 12, waves=2), cells=True, spacing=(1, 1.5, 1)), 16
     )
@@ -65,7 +67,7 @@ def test_data_types(kind):
 
 
 def several(scene, arrays, component=None):
-    """A scene's volume of a plain image with these point arrays, the first of them active."""
+    """Add a volume of a plain image with these point arrays, the first of them active."""
     plain = make_image(next(iter(arrays.values())), name=next(iter(arrays)))
     for name, values in arrays.items():
         plain.GetPointData().AddArray(make_image(values, name=name).GetPointData().GetScalars())
@@ -80,7 +82,7 @@ def plain_geometry():
 
 
 def test_changed_array():
-    """Another array of the same input, by the mapper's scalar mode."""
+    """The mapper's scalar mode chooses another array of the same input."""
     arrays = {"one": blobs(SHAPE, 12, waves=2), "two": blobs(SHAPE, 5, waves=2)}
 
     scenes = both(lambda scene: several(scene, arrays))
@@ -95,7 +97,7 @@ def test_changed_array():
 
 
 def test_implicit_array():
-    """Samples that are computed as they are read."""
+    """Samples may be computed as they are read."""
     affine = vtkAffineTypeFloat64Array()
     affine.ConstructBackend(2 / (np.prod(SHAPE) - 1), -1.0)
     affine.SetNumberOfComponents(1)
@@ -115,7 +117,7 @@ def test_implicit_array():
 
 
 def test_component():
-    """A component of vectors."""
+    """One component of vectors may be drawn."""
     vectors = np.stack([blobs(SHAPE, seed, waves=2) for seed in (3, 12, 5)], axis=-1)
     picture, alone = ComparisonScene(ours=True), ComparisonScene(ours=True)
     several(picture, {"v": vectors}).GetMapper().SetComponent(1)
@@ -131,7 +133,7 @@ def several_of_vtk(values):
 
 
 def test_time_series():
-    """Another image at the input, and another time of the same image object."""
+    """Another image at the input is drawn, and another time of the same image object."""
     steps = [progiso.compress(make_image(blobs(SHAPE, seed, waves=2)), 16) for seed in (12, 5, 12)]
     scenes = both(lambda scene: show(scene, steps[0]))
     pictures = []

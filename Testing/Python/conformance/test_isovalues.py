@@ -37,7 +37,7 @@ def test_isovalues_and_opacities(image, surfaces):
 
 
 def test_isovalues_change(image):
-    """One surface, none, three: as often as the property says."""
+    """One surface, three, or none are drawn, as the property says at the time."""
     scenes = both(lambda scene: show(scene, image))
     for surfaces in (OPAQUE, NESTED, OPAQUE):
         for scene in scenes:
@@ -48,7 +48,7 @@ def test_isovalues_change(image):
 
 
 def test_grey_transfer_function(image):
-    """VTK's GPU mapper takes no notice of it; the surface has the grey of its isovalue."""
+    """VTK's GPU mapper ignores it; in ours the surface has the grey of its isovalue."""
     scene = ComparisonScene(ours=True)
     grey = vtkPiecewiseFunction()
     grey.AddPoint(-1, 0.1)

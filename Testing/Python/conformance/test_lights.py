@@ -85,7 +85,7 @@ LIGHTS = [
 @pytest.mark.parametrize("two_sided", [True, False])
 @pytest.mark.parametrize("lights", LIGHTS, ids=lambda lights: lights.__name__)
 def test_lights(cube, lights, two_sided):
-    """Lights of each kind. Both sides are lit, or just the one where the values are lower."""
+    """Both sides are lit, or only the one where the values are lower."""
 
     def build(scene):
         show_lit(scene, cube)
@@ -98,9 +98,9 @@ def test_lights(cube, lights, two_sided):
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
 @pytest.mark.parametrize("lights", [directional, positional])
 def test_specular_light(cube, surfaces, lights):
-    """One-sided: on the other side VTK's mapper puts highlights where no mirror would.
+    """One-sided, as VTK's mapper puts highlights of the other side where no mirror would.
 
-    The highlight has its own colour.
+    The highlight has a colour of its own.
     """
 
     def build(scene):
@@ -115,9 +115,9 @@ def test_specular_light(cube, surfaces, lights):
 
 
 def test_headlight(cube):
-    """Without a light in the scene VTK's mapper has light go from the camera's position to each
-    point, ours along the view as vtkLight says: from far away both are the same. The material's
-    ambient light is there, too."""
+    """From far away, where VTK's headlight, which shines from the camera's position to each point,
+    is ours, which shines along the view as `vtkLight` says. The material's ambient light is there,
+    too."""
 
     def build(scene):
         show_lit(scene, cube, specular=0.3).GetProperty().SetAmbient(0.2)

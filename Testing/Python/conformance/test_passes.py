@@ -38,8 +38,8 @@ from helpers.messages import vtk_messages
 
 
 def test_depth_peeling(image):
-    """Translucent geometry, before, within and behind an opaque isosurface; VTK's needs to be
-    peeled with it."""
+    """Translucent geometry lies before, within and behind an opaque isosurface, which VTK needs to
+    peel, too."""
 
     def build(scene):
         show(scene, image)
@@ -66,8 +66,8 @@ def test_depth_peeling_and_clipping(image):
 
 @pytest.mark.parametrize("for_volumes", [False, True])
 def test_translucent_surfaces_cover_translucent_geometry(image, for_volumes):
-    """A translucent isosurface is drawn over translucent geometry, peeled or not, as VTK's without
-    peeling of volumes."""
+    """A translucent isosurface is drawn over translucent geometry, peeled or not, as by VTK where
+    volumes are not peeled."""
 
     def build(scene):
         show(scene, image, NESTED)
@@ -78,7 +78,7 @@ def test_translucent_surfaces_cover_translucent_geometry(image, for_volumes):
 
 
 def passes(*kinds):
-    """A sequence of render passes under a camera pass."""
+    """Return a camera pass with a sequence of render passes."""
     collection, sequence, camera = vtkRenderPassCollection(), vtkSequencePass(), vtkCameraPass()
     for kind in kinds:
         collection.AddItem(kind())
@@ -111,8 +111,7 @@ def test_render_passes(image, surfaces):
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
 @pytest.mark.parametrize("depths", ["Fixed16", "Fixed24", "Fixed32", "Float32"])
 def test_depth_formats(image, surfaces, depths):
-    """In a framebuffer of a pass, whatever its depths are kept in; VTK's mapper would have to be
-    told."""
+    """A pass's framebuffer may keep depths in any format; VTK's mapper would have to be told."""
     plain, scene = ComparisonScene(ours=True), ComparisonScene(ours=True)
     for each in (plain, scene):
         show(each, image, surfaces)
@@ -140,8 +139,8 @@ def test_fxaa(image, surfaces):
 
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
 def test_supersampling(image, surfaces):
-    """The pass draws into a framebuffer larger than the window; VTK's mapper shows no isosurface in
-    it."""
+    """The pass draws into a framebuffer larger than the window, where VTK's mapper shows no
+    isosurface."""
     plain, scene = ComparisonScene(ours=True), ComparisonScene(ours=True)
     for each in (plain, scene):
         show(each, image, surfaces)
@@ -161,6 +160,7 @@ def test_supersampling(image, surfaces):
 
 
 def occluded(scene):
+    """Give a scene the ambient occlusion pass."""
     dark = vtkSSAOPass()
     dark.SetRadius(6)
     dark.SetKernelSize(64)
@@ -170,8 +170,7 @@ def occluded(scene):
 
 
 def test_ambient_occlusion(cube):
-    """The pass darkens the isosurface as it does the same surface in triangles (VTK's mapper shows
-    none in it)."""
+    """The pass darkens the isosurface as it does its triangles. VTK's mapper shows none in it."""
     ours, theirs = ComparisonScene(ours=True), ComparisonScene(ours=True)
     show_lit(ours, cube)
     look = theirs.add_mesh(cube, OPAQUE).GetProperty()
@@ -191,7 +190,7 @@ def test_ambient_occlusion(cube):
 
 
 def test_ambient_occlusion_of_an_unlit_surface(cube):
-    """It has no normals: it counts as turned to the viewer, and is darker the more it is not."""
+    """It has no normals: it counts as turned to the viewer, and darkens as far as it is not."""
     scene = ComparisonScene(ours=True)
     show(scene, cube)
     scene.renderer.AddActor(ball(11))
@@ -204,7 +203,7 @@ def test_ambient_occlusion_of_an_unlit_surface(cube):
 
 
 def test_translucent_surfaces_occlude_nothing(image):
-    """They are no place for shadows to fall: the sphere behind has its own."""
+    """No shadow falls on them; the sphere behind keeps its own."""
     scene = ComparisonScene(ours=True)
     show(scene, image, NESTED)
     scene.renderer.AddActor(ball(11))

@@ -28,8 +28,10 @@ def test_user_matrix(image, matrix, surfaces):
 
 @pytest.mark.parametrize("matrix", [TURNED, STRETCHED, MIRRORED, TURNED @ STRETCHED @ MIRRORED])
 def test_user_matrix_and_light(cube, matrix):
-    """Beside triangles, of which the side towards the camera alone is lit: VTK's mapper does not
-    turn normals as planes."""
+    """Beside triangles, as VTK's mapper does not turn normals as planes.
+
+    Only what their lit side shows counts.
+    """
     ours, theirs = ComparisonScene(ours=True), ComparisonScene(ours=False)
     show_lit(ours, cube, matrix=matrix)
     look = theirs.add_mesh(cube, OPAQUE, matrix).GetProperty()
@@ -44,7 +46,7 @@ def test_user_matrix_and_light(cube, matrix):
 
 @pytest.mark.parametrize("spacing", [(1, 1, 1), (0.5, 2, 1)])
 def test_oriented_image(spacing):
-    """A direction matrix, an origin, and an extent that does not begin at 0."""
+    """The image has a direction matrix, an origin, and an extent that does not begin at 0."""
     direction = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))[0]
     values = make_image(
         blobs(SHAPE, 12, waves=2),
@@ -97,7 +99,7 @@ def test_camera_inside(spacing, matrix, angle, surfaces):
 def test_near_plane_cuts_the_volume(image, surfaces):
     """The camera is outside.
 
-    VTK's mapper moves the plane by a part of the range: what is that close to it does not count.
+    VTK's mapper moves the plane by a part of the range; what lies that close to it does not count.
     """
     scenes = both(lambda scene: show(scene, image, surfaces))
     for scene in scenes:
@@ -111,7 +113,7 @@ def test_near_plane_cuts_the_volume(image, surfaces):
 
 
 def test_model_transform(image):
-    """The camera's own model transform, and a change of it."""
+    """The camera has a model transform of its own, which changes."""
     scenes = both(lambda scene: show(scene, image, NESTED))
     first = scenes[0].picture()
     for scene in scenes:

@@ -23,7 +23,7 @@ from helpers.geometry import ball, wall
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
 @pytest.mark.parametrize("share", [0.3, 0.85, 1.0, 1.15, 1.8])
 def test_opaque_geometry(image, surfaces, share):
-    """Before, between and behind the surfaces."""
+    """A wall stands before, between and behind the surfaces."""
 
     def build(scene):
         show(scene, image, surfaces)
@@ -34,7 +34,7 @@ def test_opaque_geometry(image, surfaces, share):
 
 @pytest.mark.parametrize("radius", [6, 12, 17])
 def test_opaque_geometry_comes_and_goes(image, radius):
-    """Also a change that the volume takes no part in restarts a translucent picture."""
+    """A change that the volume has no part in restarts a translucent picture, too."""
     scenes = both(lambda scene: show(scene, image, NESTED))
     bare = scenes[0].picture()
     balls = [ball(radius), ball(radius)]
@@ -51,7 +51,7 @@ def test_opaque_geometry_comes_and_goes(image, radius):
 
 @pytest.mark.parametrize("peels", [False, True])
 def test_invisible_geometry_leaves_no_trace(image, peels):
-    """A sphere of opacity 0 across the surface."""
+    """A sphere of opacity 0 crosses the surface."""
     plain, scene = ComparisonScene(ours=True), ComparisonScene(ours=True)
     for each in (plain, scene):
         show(each, image, NESTED if peels else OPAQUE)
@@ -62,7 +62,7 @@ def test_invisible_geometry_leaves_no_trace(image, peels):
 
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
 def test_several_volumes(image, surfaces):
-    """Two volumes apart, each with its mapper, and each with its place and colours."""
+    """Two volumes apart have a mapper, a place and colours each."""
     other = {0.2: (*BLUE, next(iter(surfaces.values()))[3])}
 
     def build(scene):
@@ -89,8 +89,10 @@ def test_volumes_are_added_and_removed(image):
 
 
 def test_overlapping_opaque_volumes(image):
-    """Opaque surfaces of two volumes hide each other by depth; VTK's mapper has vtkMultiVolume for
-    that: against the caster's."""
+    """Opaque surfaces of two volumes hide each other by depth.
+
+    VTK has vtkMultiVolume for that, so the caster is the reference.
+    """
     half = np.eye(4)
     half[:3, 3] = 6, 4, 2
     scene = ComparisonScene(ours=True)

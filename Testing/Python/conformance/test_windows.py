@@ -21,10 +21,8 @@ from progiso.measure import tolerances
 
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
 def test_viewports(image, surfaces):
-    """Two renderers show the same volume from two sides: one mapper serves both.
-
-    The other two have something else.
-    """
+    """Two renderers with one mapper show the same volume from two sides; two others show something
+    else."""
 
     def build(scene):
         show(scene, image, surfaces)
@@ -45,7 +43,7 @@ def test_viewports(image, surfaces):
 
 
 def test_several_windows(image):
-    """Each window with its own mapper of the same image; and one mapper that goes from window to
+    """Each window has a mapper of its own for the same image; then one mapper goes from window to
     window."""
     scenes = [ComparisonScene(ours=True), ComparisonScene(ours=True)]
     for scene in scenes:
@@ -74,7 +72,7 @@ def test_window_resize(image):
 
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
 def test_multisampling(image, surfaces):
-    """With opaque geometry, whose depth comes out of the multisampled framebuffer."""
+    """With opaque geometry, whose depth is resolved from the multisampled framebuffer."""
 
     def build(scene):
         show(scene, image, surfaces)
@@ -91,7 +89,7 @@ def test_multisampling(image, surfaces):
     "kind", ["CrystalEyes", "Left", "Right", "Anaglyph", "SplitViewportHorizontal"]
 )
 def test_stereo(cube, surfaces, kind):
-    """Beside triangles: VTK's mapper has an eye's rays go on within the volume as from between the
+    """Beside triangles, as in VTK's mapper an eye's rays go on in the volume as from between the
     eyes."""
     ours, theirs, mono = (
         ComparisonScene(ours=True),

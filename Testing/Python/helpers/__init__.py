@@ -1,4 +1,4 @@
-"""What the tests share, and where things lie."""
+"""What the tests share; and where things lie."""
 
 import pathlib
 

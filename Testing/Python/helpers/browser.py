@@ -1,5 +1,5 @@
-"""What a browser that shows a pyvista plotter by trame says to its server, in trame's own protocol,
-and what it gets to see."""
+"""A browser that shows a pyvista plotter by trame: what it says to the server in trame's own
+protocol, and the pictures it gets."""
 
 import asyncio
 import io
@@ -20,7 +20,7 @@ QUIET = 1
 
 
 class Browser:
-    """A page with a plotter. For an ``async with`` statement."""
+    """A page with a plotter, for an `async with` statement."""
 
     def __init__(self, page):
         self._page = page
@@ -94,7 +94,7 @@ class Browser:
                 return answer["result"]
 
     async def _receive(self, seconds):
-        """Return the next message; pictures are kept."""
+        """Return the next message, and keep it if it is a picture."""
         message = None
         while message is None:
             chunk = await self._socket.receive(timeout=seconds)

@@ -1,5 +1,4 @@
-"""Scenes that either mapper can draw, ours or VTK's own isosurface mapper, and how their pictures
-are compared."""
+"""Scenes that either mapper can draw, ours or VTK's own isosurface mapper, and their comparison."""
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -33,8 +32,10 @@ STEP = 0.05
 
 
 def paint(volume, surfaces):
-    """Give a volume isosurfaces ``{isovalue: (red, green, blue, opacity)}``; each colour is flat
-    around its isovalue."""
+    """Give a volume isosurfaces `{isovalue: (red, green, blue, opacity)}`.
+
+    Each colour is flat around its isovalue.
+    """
     look = volume.GetProperty()
     look.GetIsoSurfaceValues().SetNumberOfContours(len(surfaces))
     values = sorted(surfaces)
@@ -50,6 +51,7 @@ def paint(volume, surfaces):
 
 
 def matrix_of(values):
+    """Return a 4x4 array as VTK's matrix."""
     matrix = vtkMatrix4x4()
     matrix.DeepCopy(np.asarray(values, float).ravel())
     return matrix
@@ -100,9 +102,9 @@ class ComparisonScene:
         return self.volumes[0].GetMapper()
 
     def add(self, image, surfaces, matrix=None, renderer=None, **settings):
-        """Add the isosurfaces of a compressed image; `settings` are ours alone.
+        """Add the isosurfaces of a compressed image; return the volume.
 
-        Return the volume.
+        Only our mapper takes `settings`.
         """
         volume = vtkIsosurfaceVolume() if self.ours else vtkVolume()
         volume.SetMapper(self.make_mapper(**settings))
@@ -116,8 +118,7 @@ class ComparisonScene:
         return volume
 
     def add_mesh(self, image, surfaces, matrix=None):
-        """Add the isosurfaces as triangles, which VTK draws by other means than volumes;
-        translucent ones are peeled."""
+        """Add the isosurfaces as triangles; translucent ones are peeled. Return the last actor."""
         for value, (*color, opacity) in surfaces.items():
             mapper, actor = vtkPolyDataMapper(), vtkActor()
             mapper.SetInputData(progiso.contour(image, value))
@@ -135,7 +136,7 @@ class ComparisonScene:
         return actor
 
     def peel(self, volumes):
-        """Have the renderer peel depths, of volumes or just of geometry."""
+        """Have the renderer peel depths, of volumes too or of geometry alone."""
         self.window.SetAlphaBitPlanes(1)
         self.renderer.UseDepthPeelingOn()
         self.renderer.SetUseDepthPeelingForVolumes(volumes)
@@ -143,6 +144,7 @@ class ComparisonScene:
         self.renderer.SetOcclusionRatio(0)
 
     def make_mapper(self, **settings):
+        """Return the mapper that is compared, ours with `settings`."""
         if not self.ours:
             mapper = vtkOpenGLGPUVolumeRayCastMapper()
             mapper.SetBlendModeToIsoSurface()
@@ -154,8 +156,10 @@ class ComparisonScene:
         return mapper
 
     def feed(self, mapper, image):
-        """Give a mapper a compressed image: VTK's gets the decompressed samples, so that both see
-        the same values."""
+        """Give a mapper a compressed image.
+
+        VTK's gets the decompressed samples: both see the same values.
+        """
         mapper.SetInputData(image if self.ours else progiso.decompress(image))
         if not self.ours:
             mapper.SetSampleDistance(STEP * min(np.abs(image.GetSpacing())))
@@ -183,6 +187,7 @@ class ComparisonScene:
         return light
 
     def render(self):
+        """Render; our image has to be complete."""
         if self.clipping_range is None:
             self.renderer.ResetCameraClippingRange()
         else:
@@ -195,6 +200,7 @@ class ComparisonScene:
             assert volume.GetMapper().GetNumberOfGLErrors() == 0
 
     def picture(self):
+        """Render; return the picture."""
         self.render()
         return picture_of(self.window)
 
@@ -208,8 +214,10 @@ def both(build, **settings):
 
 
 def far_apart(ours, theirs, beside=None):
-    """Return the share of pixels that differ by more than the levels allowed and the mean
-    difference, of those not `beside`."""
+    """Return how far pictures differ, `beside` some pixels.
+
+    That is the share of pixels that differ by more levels than allowed, and the mean difference.
+    """
     difference = np.abs(ours - theirs).max(axis=2)
     if beside is not None:
         difference = difference[~beside]
@@ -217,7 +225,7 @@ def far_apart(ours, theirs, beside=None):
 
 
 def check_like_vtk(ours, theirs, beside=None):
-    """Hold our picture against VTK's: the one definition of agreement."""
+    """Hold our picture against VTK's. This is the one definition of agreement."""
     assert ours.shape == theirs.shape
     assert (np.abs(theirs - theirs[0, 0]).max(axis=2) > 0).mean() > 0.05, (
         "VTK's picture shows next to nothing"
@@ -229,8 +237,10 @@ def check_like_vtk(ours, theirs, beside=None):
 
 
 def check_scene_like_vtk(build, **settings):
-    """Build a scene for both mappers and compare their pictures; return the scenes, and our
-    picture."""
+    """Build a scene for both mappers and compare their pictures.
+
+    Return the scenes, and our picture.
+    """
     ours, theirs = both(build, **settings)
     picture = ours.picture()
     check_like_vtk(picture, theirs.picture())
@@ -245,8 +255,11 @@ def show(scene, image, surfaces=OPAQUE, view=1, **settings):
 
 
 def show_lit(scene, image, surfaces=OPAQUE, specular=0.0, **settings):
-    """Without ambient light: where a light is in the scene VTK's mapper has that of the lights, on
-    no colour of the surface."""
+    """Add a lit volume without ambient light; return it.
+
+    Where a light is in the scene VTK's mapper has that light's ambient colour, on no colour of the
+    surface.
+    """
     volume = show(scene, image, surfaces, **settings)
     look = volume.GetProperty()
     look.ShadeOn()

@@ -11,7 +11,7 @@ from helpers.messages import vtk_messages
 
 
 def compiled_scene(image, settings, surfaces=OPAQUE):
-    """A scene whose shaders stay compiled: another volume holds them."""
+    """Return a scene whose shaders stay compiled, as another volume holds them."""
     scene = ComparisonScene(ours=True, size=(64, 48))
     for _ in range(2):
         show(scene, image, surfaces, **settings).GetProperty().ShadeOn()
@@ -29,6 +29,7 @@ def messages_of(scene):
 
 
 def is_empty(picture):
+    """Tell whether a picture shows nothing but its background."""
     return np.ptp(picture.reshape(-1, 3), axis=0).max() == 0
 
 

@@ -1,4 +1,4 @@
-"""The filters of compression, run."""
+"""Filters that are run for a test."""
 
 from helpers.messages import vtk_messages
 from progiso import vtkImageZFPCompress
@@ -12,6 +12,7 @@ def update(algorithm):
 
 
 def compressor(image, rate=8, **settings):
+    """Return the filter that compresses an image, with its settings."""
     algorithm = vtkImageZFPCompress()
     algorithm.SetInputData(image)
     algorithm.SetRate(rate)

@@ -1,4 +1,4 @@
-"""Places, bodies and cuts for scenes."""
+"""Places, solids and cuts for scenes."""
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkPlane
@@ -20,6 +20,7 @@ PLANES = (8, 20, 9, 22, 7, 16)
 
 
 def actor_of(source, color, opacity=1.0):
+    """Return an unlit actor of a source's geometry."""
     mapper = vtkPolyDataMapper()
     mapper.SetInputConnection(source.GetOutputPort())
     actor = vtkActor()
@@ -31,6 +32,7 @@ def actor_of(source, color, opacity=1.0):
 
 
 def ball(radius, color=(1, 0.9, 0.3), opacity=1.0, centre=CENTRE):
+    """Return a sphere."""
     source = vtkSphereSource()
     source.SetCenter(centre)
     source.SetRadius(radius)
@@ -40,8 +42,10 @@ def ball(radius, color=(1, 0.9, 0.3), opacity=1.0, centre=CENTRE):
 
 
 def wall(camera, share, color=(0.1, 0.9, 0.9), opacity=1.0):
-    """A square across the view, at a share of the way from the camera to its focal point, that
-    covers half the picture."""
+    """Return a square across the view that covers half the picture.
+
+    It stands at a share of the way from the camera to its focal point.
+    """
     place, focus = np.array(camera.GetPosition()), np.array(camera.GetFocalPoint())
     forward = focus - place
     right = np.cross(forward, camera.GetViewUp())
@@ -57,6 +61,7 @@ def wall(camera, share, color=(0.1, 0.9, 0.9), opacity=1.0):
 
 
 def planes(*normals):
+    """Yield planes through the centre, by their normals."""
     for normal in normals:
         plane = vtkPlane()
         plane.SetOrigin(CENTRE)

@@ -1,4 +1,4 @@
-"""OpenGL as it fails: the functions that VTK and the mapper call, with something put in between."""
+"""OpenGL as it fails: something is put between VTK or the mapper and the functions they call."""
 
 import contextlib
 import ctypes
@@ -32,21 +32,25 @@ _PROTOTYPES = {
 
 
 def _pointer(name):
-    """The pointer that a function is called through; VTK's OpenGL loader fills it in when a window
-    is made."""
+    """Return the pointer that a function is called through.
+
+    VTK's OpenGL loader fills it in when a window is made.
+    """
     (library,) = pathlib.Path(vtkmodules.__file__).parent.glob("libvtkglad*.so")
     return ctypes.c_void_p.in_dll(ctypes.CDLL(str(library)), f"vtk_glad_{name}")
 
 
 def gl(name):
-    """An OpenGL function, of the current context."""
+    """Return a function of OpenGL, of the current context."""
     return _PROTOTYPES[name](_pointer(name).value)
 
 
 @contextlib.contextmanager
 def intercepted(name, replacement):
-    """Have `replacement` called, with the function itself first, wherever VTK or the mapper calls
-    an OpenGL function."""
+    """Have `replacement` called in place of an OpenGL function.
+
+    Its first argument is the function itself.
+    """
     pointer, original = _pointer(name), gl(name)
     before = pointer.value
     hook = _PROTOTYPES[name](lambda *arguments: replacement(original, *arguments))
@@ -58,8 +62,7 @@ def intercepted(name, replacement):
 
 
 class NoRoom:
-    """Allocations of buffers of some kinds, of which the one with a number fails as the driver lets
-    it."""
+    """Have one allocation fail, by its number among those of some kinds of buffers."""
 
     def __init__(self, number, targets):
         self.number, self.targets, self.count = number, targets, 0
@@ -73,5 +76,5 @@ class NoRoom:
 
 
 def gl_errors():
-    """OpenGL's errors that nobody has asked for."""
+    """Return OpenGL's errors that nobody has asked for."""
     return [error for error in iter(gl("glGetError"), 0)]

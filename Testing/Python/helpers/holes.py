@@ -1,4 +1,4 @@
-"""Images in which much is hidden, and the cells that have no surface for it."""
+"""Images in which much is hidden, and the cells that have no surface therefore."""
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
@@ -28,18 +28,18 @@ def blank(image, points=None, cells=None, flag=HIDDEN_CELL):
 
 
 def ball(shape, radius, centre=0.5):
-    """A ball in an array [z, y, x]: a hole with a smooth border."""
+    """Return a ball in an array [z, y, x]: a hole with a smooth border."""
     place = [np.arange(n) - centre * (n - 1) for n in shape]
     return sum(p**2 for p in np.meshgrid(*place, indexing="ij")) < radius**2
 
 
 def speckles(shape, share=0.15, seed=4):
-    """Many small holes."""
+    """Return many small holes."""
     return np.random.default_rng(seed).random(shape) < share
 
 
 def cells_of(points):
-    """The cells, named by their lowest corners, that have one of some points."""
+    """Return the cells, named by their lowest corners, that have one of some points."""
     cells = np.zeros(np.array(points.shape) - 1, bool)
     for corner in np.ndindex(2, 2, 2):
         cells |= points[tuple(slice(c, n - 1 + c) for c, n in zip(corner, points.shape))]
@@ -47,10 +47,12 @@ def cells_of(points):
 
 
 def fewer(shape):
+    """Return the numbers of cells between samples."""
     return tuple(n - 1 for n in shape)
 
 
 def nan_image(hidden, values):
+    """Return an image that is NaN where it is hidden."""
     return make_image(np.where(hidden, np.float32(np.nan), values))
 
 

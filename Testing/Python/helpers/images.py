@@ -9,12 +9,13 @@ from progiso.oracle import zfp_reference
 from progiso.oracle.caster import Volume
 from progiso.verify.fields import blobs, make_image, marschner_lobb, noise
 
-__all__ = ["blobs", "make_image", "marschner_lobb", "noise", "samples_of"]  # for all tests
+#: What images are made of, passed on to all tests.
+__all__ = ["blobs", "make_image", "marschner_lobb", "noise", "samples_of"]
 
-#: Of the names of a compressed volume's metadata arrays.
+#: The names of a compressed volume's metadata arrays begin with it.
 PREFIX = "ProgIso.ZFP."
 
-#: Those arrays, but for the stream.
+#: The metadata arrays, but for the stream.
 METADATA = ("Version", "BlockBits", "Dimensions", "Range", "ScalarType", "Component", "Association")
 
 
@@ -47,7 +48,7 @@ def same_bits(a, b):
 
 
 def check_same(volume, expected):
-    """Stream and metadata agree."""
+    """Check that two compressed volumes agree in stream and metadata."""
     assert stream_of(volume) == stream_of(expected)
     for name in METADATA:
         assert metadata(volume, name).tolist() == metadata(expected, name).tolist(), name

@@ -1,5 +1,4 @@
-"""What a translucent picture should be: layers of isosurfaces blended front to back along the
-caster's rays."""
+"""What a translucent picture should be: isosurfaces blended along the caster's rays."""
 
 import numpy as np
 
@@ -14,6 +13,7 @@ def places(crossings, volume, camera, size):
 
 
 def to_index(volume, world):
+    """Return places of the world in index space."""
     inverse = np.linalg.inv(volume.index_to_world)
     return world @ inverse[:3, :3].T + inverse[:3, 3]
 
@@ -25,6 +25,7 @@ def regions(points, planes):
 
 
 def kept(flags, numbers):
+    """Tell which regions are drawn, by their numbers and the mapper's flags."""
     return (flags >> numbers & 1).astype(bool)
 
 
@@ -61,9 +62,11 @@ def blend(crossings, looks, background, size, end=np.inf):
 
 
 def capped(volume, isovalues, camera, size, cropping):
-    """Mark the pixels where VTK's mapper shows a surface at the border of a region: it draws one
-    wherever a ray comes back into a region that is drawn on another side than it left the last one,
-    and none where the two make up for each other."""
+    """Mark the pixels where VTK's mapper shows a surface at the border of a region.
+
+    It draws one wherever a ray comes back into a region that is drawn on another side than it left
+    the last one, and none where the two make up for each other.
+    """
     planes, flags = cropping
     origins, directions = camera.rays(size)
     points, ways = (

@@ -1,4 +1,4 @@
-"""What VTK reports."""
+"""Messages that VTK reports."""
 
 import contextlib
 
@@ -7,7 +7,7 @@ from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 
 @contextlib.contextmanager
 def vtk_messages():
-    """Collect what VTK reports meanwhile, as a list that is filled at the end."""
+    """Collect what VTK reports meanwhile, in a list that is filled at the end."""
     window, messages = vtkStringOutputWindow(), []
     before = vtkOutputWindow.GetInstance()
     vtkOutputWindow.SetInstance(window)

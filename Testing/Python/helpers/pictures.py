@@ -1,4 +1,4 @@
-"""Pictures against the baselines that are committed beside the tests."""
+"""Pictures against the baselines that lie beside the tests."""
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -23,6 +23,7 @@ def read_png(path):
 
 
 def write_png(pixels, path):
+    """Write colours [row, column, rgb], row 0 at the top."""
     image = vtkImageData()
     image.SetDimensions(pixels.shape[1], pixels.shape[0], 1)
     image.GetPointData().SetScalars(
@@ -35,8 +36,10 @@ def write_png(pixels, path):
 
 
 def check_picture(pixels, name, config, folder):
-    """Hold a picture against its baseline, or store it as such; where it fails it is left in
-    `folder`."""
+    """Hold a picture against its baseline, or store it as that.
+
+    Where it fails the picture is left in `folder`.
+    """
     path = BASELINES / f"{name}.png"
     if config.getoption("--write-baselines"):
         BASELINES.mkdir(exist_ok=True)

@@ -26,15 +26,15 @@ SCRIPTS = TESTS / "with_paraview" / "scripts"
 displays = itertools.count(2000 + os.getpid() % 20000)
 
 
-def run(folder, *arguments):
-    """Run a command in a folder."""
+def run_progiso(folder, *arguments):
+    """Run `python -m progiso` in a folder."""
     command = [sys.executable, "-m", "progiso", *map(str, arguments)]
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, env=os.environ)
 
 
-def call(folder, *arguments, succeeds=True):
-    """Run a command in a folder; return what it prints."""
-    done = run(folder, *arguments)
+def call_progiso(folder, *arguments, succeeds=True):
+    """Run `python -m progiso` in a folder; return what it prints, on stderr if it is to fail."""
+    done = run_progiso(folder, *arguments)
     assert (done.returncode == 0) == succeeds, done.stdout + done.stderr
     return done.stdout if succeeds else done.stderr
 
@@ -54,8 +54,10 @@ def compress_command(source, target, rate=1):
 
 
 def under_x(*command, python_path=(), timeout=600, cwd=None, **variables):
-    """Run a command in a virtual display of its own, with more environment variables; return its
-    output."""
+    """Run a command in a virtual display of its own; return its output.
+
+    `variables` are added to its environment.
+    """
     assert shutil.which("xvfb-run"), "the tests of the plugin need xvfb-run (Debian: xvfb, xauth)"
     environment = {
         k: v

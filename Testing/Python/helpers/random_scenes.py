@@ -11,7 +11,7 @@ SIZE = (96, 64)
 
 
 def random_field(kind, shape, seed):
-    """Samples [z, y, x] that rate 32 keeps without loss: multiples of 2^-10."""
+    """Return samples [z, y, x] that rate 32 keeps without loss: multiples of 2^-10."""
     values = (
         noise(shape, seed)
         if kind == "noise"
@@ -21,8 +21,10 @@ def random_field(kind, shape, seed):
 
 
 def random_camera(shape, seed):
-    """A camera of an image of this shape at the origin: about it, in it or parallel; every other
-    looks along an axis."""
+    """Return a camera about an image of this shape, in it, or parallel.
+
+    The image is at the origin; every other camera looks along an axis.
+    """
     rng = np.random.default_rng(seed)
     size = np.array(shape[::-1]) - 1.0
     target = rng.uniform(0.2, 0.8, 3) * size
@@ -42,7 +44,7 @@ def random_camera(shape, seed):
 
 
 def pictures_of_every_kind():
-    """Depths and colours of some scenes, as bytes."""
+    """Return depths and colours of some scenes, as bytes."""
     content = b""
     for seed, kind in enumerate(("noise", "smooth", "waves")):
         image = progiso.compress(make_image(random_field(kind, (20, 22, 18), seed)), rate=8)

@@ -1,4 +1,4 @@
-"""Scenes with the mapper in them, and how their depth is judged by the caster."""
+"""Scenes with the mapper in them, and how the caster judges their depth."""
 
 import itertools
 import re
@@ -128,8 +128,10 @@ class Scene:
 
 
 def least_budget(image, isovalue, camera, size=(160, 120), **settings):
-    """Return the least memory budget that a lit scene can work with, as the error says that one
-    byte is too little."""
+    """Return the least memory budget of a lit scene.
+
+    The error says it when there is only one byte.
+    """
     scene = Scene(image, isovalue, camera, size, lit=True, MemoryBudget=1, **settings)
     with vtk_messages() as messages:
         scene.window.Render()
@@ -160,8 +162,7 @@ def check_scene(
     volume=None,
     **settings,
 ):
-    """Render a scene of a compressed volume and hold its depth against the caster; return the
-    scene."""
+    """Hold the depth of a compressed volume's scene against the caster; return the scene."""
     scene = Scene(image, isovalue, camera, size, user_matrix, **settings)
     got = scene.depth()
     volume = volume or reference_volume(image, user_matrix)
@@ -171,8 +172,10 @@ def check_scene(
 
 
 def check_depth(depth, expected, grazing=tolerances.GRAZING_FRACTION):
-    """Hold a depth image against a `Cast`, see `progiso.measure.agreement`; not too many rays may
-    graze."""
+    """Hold a depth image against a `Cast`, as `progiso.measure.agreement` does.
+
+    Not too many rays may graze.
+    """
     assert depth.dtype == np.float32 and depth.shape == expected.depth.shape
     found = compare(depth, expected)
     wrong = found.wrong
@@ -193,6 +196,7 @@ def check_depth(depth, expected, grazing=tolerances.GRAZING_FRACTION):
 
 
 def check_memory(image, statistics):
+    """Hold the GPU memory that a scene reports against the formula, cache and stream aside."""
     memory = statistics["memory"]
     cache = sum(
         bytes_ for name, bytes_ in memory["buffers"].items() if name.lower().startswith("cache")

@@ -9,7 +9,7 @@ from progiso import vtkZFPContour
 
 
 def contour_by(algorithm, image, isovalues):
-    """Contour with gradients, normals and scalars."""
+    """Contour an image with gradients, normals and scalars; return the surface."""
     algorithm.SetInputData(image)
     for i, isovalue in enumerate(isovalues):
         algorithm.SetValue(i, isovalue)
@@ -19,6 +19,7 @@ def contour_by(algorithm, image, isovalues):
 
 
 def contoured(image, isovalues, brick_size=64, threads=0):
+    """Contour a compressed volume."""
     algorithm = vtkZFPContour()
     algorithm.SetBrickSize(brick_size)
     algorithm.SetNumberOfThreads(threads)
@@ -26,12 +27,12 @@ def contoured(image, isovalues, brick_size=64, threads=0):
 
 
 def corners_of(surface):
-    """The corners of every triangle, as numbers of points."""
+    """Return the corners of every triangle, as numbers of points."""
     return vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
 
 
 def points_of(surface):
-    """Every point's coordinates, normal, gradient and isovalue, in bits."""
+    """Return the bits of every point's coordinates, normal, gradient and isovalue."""
     if surface.GetNumberOfPoints() == 0:
         return np.zeros((0, 10), np.uint32)
     data = surface.GetPointData()
@@ -46,7 +47,7 @@ def points_of(surface):
 
 
 def canonical(surface):
-    """Points in order of their bits, and triangles in that of their corners' ranks among them."""
+    """Return the points in order of their bits, the triangles in that of their corners' ranks."""
     points, corners = points_of(surface), corners_of(surface)
     order = np.lexsort(points.T)
     points = points[order]
@@ -57,7 +58,7 @@ def canonical(surface):
 
 
 def check_same_surface(ours, theirs):
-    """The same points and triangles, whatever their order."""
+    """Check that surfaces have the same points and triangles, whatever their order."""
     for mine, expected in zip(canonical(ours), canonical(theirs)):
         assert np.array_equal(mine, expected)
 

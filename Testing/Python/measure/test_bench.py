@@ -1,4 +1,4 @@
-"""The benchmarks: that every set runs and reports, and that they judge rightly.
+"""Benchmarks: every set runs and reports, and goals are judged rightly.
 
 Speed is no test's business.
 """
@@ -15,7 +15,7 @@ import pytest
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import progiso
-from helpers.programs import call
+from helpers.programs import call_progiso
 from progiso.bench import goals
 from progiso.bench.fields import parse_field
 from progiso.bench.literature import GPU
@@ -46,17 +46,17 @@ OPTIONS = {
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """Where the sets leave their results, each in a folder of its own."""
+    """Return the folder where the sets leave their results, each in one of its own."""
     return tmp_path_factory.mktemp("bench")
 
 
 @pytest.fixture(scope="module")
 def results(folder):
-    """Run a set once; return its folder."""
+    """Return a function that runs a set once and returns its folder."""
 
     def run(name):
         if not (folder / name).exists():
-            call(folder, "bench", name, *TINY, *OPTIONS.get(name, ()), "--output", name)
+            call_progiso(folder, "bench", name, *TINY, *OPTIONS.get(name, ()), "--output", name)
         return folder / name
 
     return run
@@ -86,7 +86,7 @@ def test_quick_names_the_peers(results):
 
 
 def test_protocol_counts(results):
-    """What the paper's tables say can be checked against each other."""
+    """Figures of the paper's tables agree with each other."""
     record = load_document(results("paper") / "results.json")["measurements"]["protocol"][0]
     assert record["time"]["count"] == len(record["isovalues"]) * record["positions"] == 4
     assert record["memory"]["blocks"] == 6**3 and record["memory"]["pixels"] == 64 * 48
@@ -104,8 +104,7 @@ def test_protocol_counts(results):
 
 
 def test_moved_bytes(results):
-    """The floor of an image's time: no less than its pixels, its blocks decoded and intersected,
-    once."""
+    """An image's time has a floor: its pixels, its blocks decoded and intersected, once."""
     record = load_document(results("paper") / "results.json")["measurements"]["protocol"][0]
     pixels = 64 * 48 * 32
     assert (
@@ -117,9 +116,9 @@ def test_moved_bytes(results):
 
 @pytest.mark.parametrize("name, kind", [("peers", "peers"), ("paper", "protocol")])
 def test_largest_mesh(results, folder, name, kind):
-    """No meshes of volumes larger than that; everything else as ever."""
+    """Larger volumes have no meshes; everything else stays."""
     out = f"{name}-no-mesh"
-    call(
+    call_progiso(
         folder,
         "bench",
         name,
@@ -149,7 +148,7 @@ def test_random_isovalues_are_seeded():
 
 
 def test_report_makes_the_same_of_json(results, folder):
-    call(folder, "bench", "report", "quick/results.json", "--output", "again")
+    call_progiso(folder, "bench", "report", "quick/results.json", "--output", "again")
     for path in results("quick").glob("*.md"):
         assert (folder / "again" / path.name).read_bytes() == path.read_bytes()
     assert {p.name for p in (folder / "again").glob("*.png")} == {
@@ -158,8 +157,8 @@ def test_report_makes_the_same_of_json(results, folder):
 
 
 def test_report_as_a_page(results, folder):
-    """A Markdown file of any name, with its plots in a folder of that name."""
-    call(
+    """A Markdown file of any name has its plots in a folder of that name."""
+    call_progiso(
         folder, "bench", "report", results("quick") / "results.json", "--output", "pages/machine.md"
     )
     text = (folder / "pages" / "machine.md").read_text()
@@ -173,7 +172,7 @@ def test_report_as_a_page(results, folder):
 
 def test_reports_are_put_together(results, folder):
     paths = [results(name) / "results.json" for name in ("peers", "budget", "peers")]
-    call(folder, "bench", "report", *paths, "--output", "both")
+    call_progiso(folder, "bench", "report", *paths, "--output", "both")
     text = (folder / "both" / "results.md").read_text()
     assert "## Side by side" in text and "## Memory budgets" in text
     merged = merge([load_document(path) for path in paths])
@@ -181,7 +180,7 @@ def test_reports_are_put_together(results, folder):
 
 
 def test_measuring_needs_no_matplotlib(folder):
-    """A bare machine has none: the plots are left to another one."""
+    """A machine without it leaves the plots to another one."""
     (folder / "bare").mkdir()
     (folder / "bare" / "matplotlib.py").write_text("raise ImportError('not here')")
     path = os.pathsep.join(filter(None, (str(folder / "bare"), os.environ.get("PYTHONPATH"))))
@@ -202,7 +201,8 @@ def test_measuring_needs_no_matplotlib(folder):
 
 
 def test_soak_judges_what_is_left_behind(results):
-    """Memory that grows by more than the goal, steps and noise aside, and errors of OpenGL's."""
+    """Memory may not grow by more than the goal, steps and noise aside, and OpenGL may have no
+    errors."""
     document = load_document(results("soak") / "results.json")
     (record,) = document["measurements"]["soak"]
     assert (
@@ -256,7 +256,7 @@ def test_errors_are_one_line(folder, case):
     (folder / "a-file").write_text("?")
     (folder / "other.json").write_text('{"schema": 0}')
     (folder / "damaged.json").write_text('{"schema": 1}')
-    lines = call(folder, "bench", *arguments, succeeds=False).strip().splitlines()
+    lines = call_progiso(folder, "bench", *arguments, succeeds=False).strip().splitlines()
     assert len(lines) == 1, lines
     assert "error" in lines[0] and word in lines[0]
 
@@ -270,7 +270,7 @@ def test_machines_are_not_mixed(results):
 
 
 def test_rates_tell_what_they_cost(results):
-    """Errors fall with the rate; the finest has the surface as it is."""
+    """Errors fall with the rate; the finest keeps the surface as it is."""
     record = load_document(results("rates") / "results.json")["measurements"]["rates"][0]
     points = record["points"]
     assert [point["rate"] for point in points] == sorted(point["rate"] for point in points)
@@ -304,8 +304,7 @@ def test_goals_are_computed(results):
 
 
 def test_busy_machines_are_told(results):
-    """Where other processes took the processor no time is judged, met or not; memory is all the
-    same."""
+    """Where other processes took the processor no time is judged; memory still is."""
     document = load_document(results("paper") / "results.json")
     records = [record for records in document["measurements"].values() for record in records]
     assert all(record["others_cores"] is None or record["others_cores"] >= 0 for record in records)

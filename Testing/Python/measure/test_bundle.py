@@ -16,8 +16,10 @@ BENCHMARKS = REPOSITORY / "Testing" / "Benchmarks"
 
 @pytest.fixture
 def bundle(tmp_path):
-    """A bundle whose Python prints its environment and arguments, with a library that every machine
-    has, and one that none has."""
+    """Return a bundle whose Python prints its environment and arguments.
+
+    It has a library that every machine has, and one that none has.
+    """
     python = tmp_path / "python/bin/python3"
     python.parent.mkdir(parents=True)
     python.write_text(
@@ -53,7 +55,7 @@ def test_nothing_of_the_machines_python_comes_in(bundle):
 
 
 def test_libraries_stand_in_where_they_lack(bundle):
-    """And what the caller had set comes after them."""
+    """What the caller had set comes after them."""
     folders = launch(bundle, LD_LIBRARY_PATH="/driver")[0]["LD_LIBRARY_PATH"].split(":")
     assert folders == [
         str(bundle / "python/lib"),

@@ -38,7 +38,7 @@ def test_depth_error_of_a_shifted_image():
 
 @pytest.mark.parametrize("border", [False, True])
 def test_topology(border):
-    """Two tori and a ball; also where the volume's border cuts the ball."""
+    """There are two tori and a ball, which the volume's border may cut."""
     z, y, x = np.indices((40, 50, 90), dtype=float)
 
     def torus(at):
@@ -58,7 +58,7 @@ def test_topology(border):
 
 @pytest.fixture(scope="module")
 def ramp():
-    """A plane in a volume of flat voxels, and the caster's image of it."""
+    """Return a plane in a volume of flat voxels, its camera, and the caster's image of it."""
     z, y, x = np.indices((20, 24, 28)).astype(np.float32)
     values = 0.7 * x - 0.4 * y + 0.5 * z
     image = make_image(values, spacing=(1, 1, 2), origin=(5, -3, 2))
@@ -69,7 +69,7 @@ def ramp():
 
 
 def off(view, camera, expected):
-    """Signed depth errors in voxels, where both hit; almost all rays agree on that."""
+    """Return signed depth errors in voxels, where both hit. Almost all rays agree on that."""
     view.render_from(camera)
     depth = view.depth()
     view.close()
@@ -90,7 +90,7 @@ def test_depth_of_a_mesh(ramp):
 
 @pytest.mark.parametrize("distance", [0.1, 0.5])
 def test_depth_of_vtks_mapper(ramp, distance):
-    """It shades at the first sample beyond the surface: up to one sample distance too deep, half of
+    """It shades at the first sample beyond the surface, up to one sample distance too deep, half of
     it in the mean."""
     image, camera, expected = ramp
     error = off(VolumeMapper(image, 9.0, (150, 100), distance), camera, expected)
@@ -101,8 +101,8 @@ def test_depth_of_vtks_mapper(ramp, distance):
 
 @pytest.mark.parametrize("shape", [(9, 13, 10), (8, 4, 5), (12, 11, 6)])
 def test_blocks_of_explicit_extraction(shape):
-    """Counted cell by cell: a block is held where a cell of it is, active with the blocks of its
-    cells' corners."""
+    """Counted cell by cell: a block is held where one of its cells is, active with the blocks of
+    its cells' corners."""
     values = noise(shape, 4)
     held, active = set(), set()
     for cell in np.ndindex(*(n - 1 for n in shape)):

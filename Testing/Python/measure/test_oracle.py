@@ -1,5 +1,4 @@
-"""The caster against closed forms, against dense sampling, and against VTK's own camera and
-geometry."""
+"""The caster against closed forms, dense sampling, and VTK's own camera and geometry."""
 
 import numpy as np
 import pytest
@@ -11,7 +10,7 @@ from progiso.oracle.caster import Camera, Slack, Volume, cast, cast_rays
 
 
 def sample(values, points):
-    """Interpolate trilinearly, point by point: another way than the caster's polynomials."""
+    """Interpolate trilinearly, point by point, otherwise than by the caster's polynomials."""
     cell = np.clip(np.floor(points).astype(int), 0, np.array(values.shape[::-1]) - 2)
     local = points - cell
     total = np.zeros(points.shape[:-1])
@@ -23,7 +22,7 @@ def sample(values, points):
 
 
 def random_rays(rng, shape, count):
-    """Rays from outside, from inside, along axes and through corners."""
+    """Return rays from outside, from inside, along axes and through corners."""
     size = np.array(shape[::-1]) - 1.0
     targets = rng.uniform(0, 1, (count, 3)) * size
     targets[: count // 4] = np.round(targets[: count // 4])
@@ -52,8 +51,7 @@ HIDDEN_CELLS = {
 
 @pytest.mark.parametrize("case", HIDDEN_CELLS)
 def test_hidden_cells(case):
-    """There is no surface in them, and none where a ray comes out of them on another side than it
-    went in."""
+    """No surface is in them, and none where a ray leaves them on another side than it entered."""
     columns, depths = HIDDEN_CELLS[case]
     x = np.arange(10.0)
     values = np.broadcast_to(2 - np.abs(x - 5.5), (6, 5, 10)).copy()
@@ -133,7 +131,7 @@ def test_ramp():
 
 
 def test_sphere():
-    """A sampled distance shows the sphere, from outside and from within."""
+    """A sampled distance shows the sphere, from outside and from inside."""
     n, radius = 65, 20.0
     centre = (n - 1) / 2
     values = np.linalg.norm(np.stack(np.indices((n, n, n))) - centre, axis=0)

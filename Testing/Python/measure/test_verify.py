@@ -1,4 +1,4 @@
-"""``progiso verify``: that the quick table holds, and that it would tell if it did not."""
+"""`progiso verify`: the quick table holds, and would tell if it did not."""
 
 import dataclasses
 import json
@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from helpers.programs import call
+from helpers.programs import call_progiso
 from progiso.cli import main
 from progiso.measure import agreement
 from progiso.oracle.caster import Cast
@@ -25,8 +25,10 @@ def folder(tmp_path_factory):
 
 
 def test_quick_table(folder):
-    """Every row has its verdict, and none fails; JSON, page and terminal tell the same."""
-    printed = call(folder, "verify", "--quick", "--json", "rows.json", "--output", "page.md")
+    """Every row has its verdict, and none fails. JSON, page and terminal agree."""
+    printed = call_progiso(
+        folder, "verify", "--quick", "--json", "rows.json", "--output", "page.md"
+    )
     document = json.loads((folder / "rows.json").read_text())
     assert {"cpu", "cores", "gl", "vtk"} <= set(document["machine"]) and document["runs"][0][
         "complete"
@@ -74,7 +76,7 @@ def test_a_picture_as_it_should_be():
 
 
 def test_a_shift_fails(broken):
-    """By a thousandth of a voxel, of all three depths."""
+    """All three depths are off by a thousandth of a voxel."""
     broken(
         lambda cast: Cast(
             *(part + 1e-3 / cast.voxels for part in (cast.depth, cast.early, cast.late)),
@@ -87,7 +89,7 @@ def test_a_shift_fails(broken):
 
 @pytest.mark.parametrize("value", [np.inf, 40.0])
 def test_a_wrong_hit_fails(broken, value):
-    """One ray that should miss, or another that should hit."""
+    """One ray misses that should hit, or hits that should miss."""
 
     def change(cast):
         at = np.flatnonzero(np.isfinite(cast.depth.flat) == np.isinf(value))[0]
@@ -143,7 +145,7 @@ def test_the_worst_counts():
 
 
 def test_the_command_fails_with_a_case(monkeypatch, capsys):
-    """Exit status 1, and the case's name."""
+    """The exit status is 1, and the case is named."""
     monkeypatch.setattr(agreement.tolerances, "DEPTH_VOXELS", 1e-12)
     monkeypatch.setattr(agreement.tolerances, "DEPTH_RELATIVE", 0.0)
     monkeypatch.setattr(command, "QUICK", Settings((64, 48), 1))
@@ -162,7 +164,7 @@ def test_errors_name_what_is_wrong(arguments, message, capsys):
 
 
 def test_agreement_of_grazing_rays():
-    """Between the first possible and the first certain crossing anything goes; beyond, the distance
+    """Anything goes between the first possible and the first certain crossing; beyond, the distance
     to them counts."""
     early, late = (
         np.array([[1.0, 1.0, 1.0, 1.0, np.inf]]),
@@ -175,8 +177,8 @@ def test_agreement_of_grazing_rays():
 
 
 def test_rays_through_a_hole_fail(monkeypatch):
-    """A closed field whose skin is taken off after it was checked: the table counts the rays and
-    tells how to repeat the first."""
+    """A closed field loses its skin after it was checked: the table counts the rays and says how to
+    repeat the first."""
     closed = cracks.compressed_field
 
     def opened(field, rate):

@@ -18,7 +18,7 @@ CAMERA = Camera((CENTER, CENTER, 90.0), (CENTER, CENTER, CENTER), (0.0, 1.0, 0.0
 
 
 def ball(cells=False):
-    """The distance from the centre, and beside it how far to the right."""
+    """Return the distance from the centre, and beside it how far to the right a sample is."""
     z, y, x = np.meshgrid(*[np.arange(N) - CENTER] * 3, indexing="ij")
     image = make_image(np.sqrt(x * x + y * y + z * z).astype(np.float32), "distance", cells=cells)
     right = numpy_to_vtk(x.astype(np.float32).ravel(), deep=True)
@@ -57,7 +57,7 @@ def picture_of(scene):
 
 
 def ray_places(scene):
-    """Where the rays hit, x relative to the centre, row 0 at the top; inf where they do not."""
+    """Return where rays hit, x relative to the centre, row 0 at the top; inf where none does."""
     distance = scene.depth()
     rows, columns = distance.shape
     half = np.tan(np.radians(CAMERA.view_angle / 2))
@@ -85,7 +85,7 @@ def test_colour_of_another_array(settings, cells):
 @pytest.mark.parametrize("lit", [False, True])
 @pytest.mark.parametrize("opacity", [1.0, 0.5])
 def test_same_from_a_cache_and_from_port_1(lit, opacity):
-    """An array, a compressed volume; decoded as a whole or block by block, pass by pass: the same
+    """Colours of an array or a compressed volume, decoded as a whole or pass by pass, are the same
     bits."""
     image = ball()
     right = progiso.compress(image, rate=16, array="right")

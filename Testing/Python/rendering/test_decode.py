@@ -1,4 +1,4 @@
-"""The decoder of the shaders against libzfp, bit for bit."""
+"""The shaders' decoder against libzfp, bit for bit."""
 
 import numpy as np
 import pytest
@@ -59,7 +59,7 @@ def test_all_rates(window, rate):
     ],
 )
 def test_any_bits_per_block(window, bits):
-    """Blocks that start and end anywhere within a word."""
+    """Blocks may start and end anywhere within a word."""
     image = of(noise((9, 10, 11), bits), bits / 64)
     check_decoding(window, image)
     check_decoding(window, of(blobs((9, 10, 11), bits), bits / 64))
@@ -74,7 +74,7 @@ def test_all_partial_blocks(window, x):
 
 @pytest.mark.parametrize("seed", range(8))
 def test_extreme_values(window, seed):
-    """Blocks of zeros, of one exponent and of all; of denormals, and close to overflow."""
+    """Blocks hold zeros, one exponent or all, denormals, or values close to overflow."""
     rng = np.random.default_rng(seed)
     values = rng.choice(EXTREMES, (16, 16, 16))
     values[:4] = 0

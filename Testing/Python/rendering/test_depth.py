@@ -1,4 +1,5 @@
-"""What the mapper sees against what the double-precision caster sees in the same decoded values."""
+"""Depths that the mapper sees against those of the double-precision caster, in the same decoded
+values."""
 
 import numpy as np
 import pytest
@@ -29,7 +30,7 @@ def test_marschner_lobb(rate, i):
 
 @pytest.mark.parametrize("seed", range(6))
 def test_white_noise(seed):
-    """Roots in almost every cell, many of them double."""
+    """There are roots in almost every cell, many of them double."""
     rng = np.random.default_rng(seed)
     image = compressed(noise(tuple(rng.integers(5, 30, 3)), seed), rng.choice([4, 8, 16.5]))
     camera = orbit(reference_volume(image), seed, 6)
@@ -41,8 +42,7 @@ def test_white_noise(seed):
     [(2, 2, 2), (2, 9, 33), (5, 5, 5), (4, 4, 4), (8, 12, 16), (9, 13, 17), (3, 70, 6), (65, 2, 3)],
 )
 def test_shapes(shape):
-    """Volumes of one cell, of one block, with partial blocks and partial groups of blocks on any
-    side."""
+    """Volumes of one cell or one block, with partial blocks and macrocells on any side."""
     image = compressed(noise(shape, 11), 16)
     volume = reference_volume(image)
     for i in range(2):
@@ -102,8 +102,7 @@ def test_parallel_projection(i):
 @pytest.mark.parametrize("axis", range(3))
 @pytest.mark.parametrize("sign", [-1, 1])
 def test_along_an_axis(axis, sign, parallel_scale):
-    """Rays along an axis, at 12 of 24 pixels a voxel also exactly on planes of voxels, and central
-    rays through corners of cells."""
+    """Rays follow an axis: half lie exactly on planes of voxels, central ones meet corners."""
     image = compressed(blobs((25, 25, 25), 6))
     position = np.full(3, 12.0)
     position[axis] += sign * 50
@@ -114,7 +113,7 @@ def test_along_an_axis(axis, sign, parallel_scale):
 
 
 def test_rays_in_planes_of_voxels():
-    """Parallel rays whose every sample lies in a face, an edge or a corner of cells."""
+    """Every sample of a parallel ray lies in a face, an edge or a corner of cells."""
     image = compressed(marschner_lobb(17), 32)
     volume = reference_volume(image)
     # Pixels of half a voxel: every other lies on planes of voxels in both directions; up to an
@@ -181,14 +180,14 @@ def test_user_matrix(kind, parallel):
 
 @pytest.mark.parametrize("scale", [1e-28, 1e-20, 1e-3, 1e4, 1e20, 1e30, 1e37])
 def test_scales_of_values(scale):
-    """From the least that zfp takes (see test_filters.py) to the most that float32 holds: no square
+    """From the least that zfp takes (see test_filters.py) to the most that float32 holds no square
     overflows or vanishes."""
     image = compressed(blobs((24, 24, 24), 9) * np.float32(scale), 12)
     check_scene(image, 0.1 * scale, orbit(reference_volume(image), 1, 3))
 
 
 def test_isovalue_far_from_zero():
-    """Small differences on a large offset: half the digits are gone, and the rest must do."""
+    """Small differences on a large offset lose half their digits; the rest must do."""
     image = compressed(blobs((24, 24, 24), 9) + np.float32(1000), 20)
     check_scene(image, 1000.1, orbit(reference_volume(image), 2, 3))
 
@@ -202,8 +201,10 @@ def test_isovalue_of_many_digits():
 
 @pytest.mark.parametrize("isovalue", [0.0, 1.0, 2.0])
 def test_isovalue_equal_to_voxels(isovalue):
-    """A field of three whole values has plateaus and edges exactly at the isovalue; where it is hit
-    must stay possible."""
+    """A field of three whole values has plateaus and edges exactly at the isovalue.
+
+    Where it is hit must stay possible.
+    """
     image = compressed(np.clip(np.round(blobs((24, 20, 28), 10) + 1), 0, 2).astype(np.float32), 32)
     volume = reference_volume(image)
     assert set(np.unique(volume.values)) == {0, 1, 2}
@@ -263,7 +264,7 @@ SCANS = {"ct-cranium": 226.0, "mri-brain": 45.0}
 
 @pytest.fixture(scope="module")
 def scan(request):
-    """Compress a real scan once for all its tests."""
+    """Return a real scan, compressed once for all its tests."""
     from progiso.data import fetch
 
     return progiso.compress(progiso.read(fetch(request.param)), rate=8), SCANS[request.param]
@@ -279,7 +280,7 @@ def test_scan(scan):
 
 @pytest.mark.parametrize("scan", ["ct-cranium"], indirect=True)
 def test_cranium_at_full_size(scan):
-    """The image that the project is first judged by."""
+    """The image by which the project is judged first."""
     image, isovalue = scan
     volume = reference_volume(image)
     check_scene(image, isovalue, orbit(volume, 4, 10), (1280, 720), volume=volume)

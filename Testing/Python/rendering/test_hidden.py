@@ -70,7 +70,7 @@ def test_several_isovalues():
 
 
 def test_the_mapper_hides_what_its_plain_input_does():
-    """And follows what changes there."""
+    """It follows what changes there, too."""
     values = blobs(SHAPE, 3)
     image = blank(make_image(values), ball(SHAPE, 9))
     scene = Scene(
@@ -108,8 +108,10 @@ def test_nan_is_an_error_unless_it_is_hidden():
 @pytest.mark.parametrize("cached", [False, True])
 @pytest.mark.parametrize("make", [speckles, lambda shape: ball(shape, 8)])
 def test_light_at_the_border_of_a_hole(make, cached):
-    """Differences of samples do not reach into what is hidden: a plane's light is that of the plane
-    up to the border."""
+    """Differences of samples do not reach into what is hidden.
+
+    A plane's light is that of the plane up to the border.
+    """
     z, y, x = np.meshgrid(*[np.arange(n, dtype=np.float32) for n in SHAPE], indexing="ij")
     values = z + 0.4 * y + 0.3 * x
     hidden = make(SHAPE)
@@ -150,7 +152,7 @@ def test_light_at_the_border_of_a_hole(make, cached):
 
 
 def test_what_hiding_takes():
-    """Nothing where nothing is hidden; else the mask, and 16 bytes a slot."""
+    """Hiding takes no memory where nothing is hidden; else the mask, and 16 bytes a slot."""
     image, _ = hidden_points()
     plain = progiso.compress(make_image(blobs(SHAPE, 3)), rate=12)
     camera = orbit(reference_volume(plain), 1, 4)
@@ -165,8 +167,8 @@ def test_what_hiding_takes():
 
 
 def test_all_of_it_hidden():
-    """Shows nothing, and is no error."""
-    image = progiso.compress(make_image(np.full(SHAPE, np.nan, np.float32)), rate=8, mask_nan=True)
+    """A volume that is hidden as a whole shows nothing, and is no error."""
+    image = progiso.compress(make_image(np.full(SHAPE, np.nan, np.float32)), 8, mask_nan=True)
     assert progiso.describe(image)["range"] == [0, 0]
     assert not np.isfinite(Scene(image, 0, Camera((14, 14, 90), (14, 14, 12)), SIZE).depth()).any()
     assert np.isnan(samples_of(progiso.decompress(image))).all()

@@ -1,4 +1,4 @@
-"""How the work is divided must not show: depth images agree in every byte."""
+"""How the work is divided does not show: depth images agree in every byte."""
 
 import collections
 
@@ -24,7 +24,7 @@ Case = collections.namedtuple("Case", "image isovalue camera depth picture")
 
 @pytest.fixture(scope="module", params=FIELDS)
 def case(request):
-    """A field, an isovalue, a camera, and depth and picture of one pass over the decoded volume."""
+    """Return field, isovalue and camera, depth and picture of one pass over decoded samples."""
     field, isovalue = FIELDS[request.param]
     image = progiso.compress(make_image(field()), rate=8)
     camera = orbit(reference_volume(image), 2, 5)
@@ -36,7 +36,7 @@ def case(request):
 
 
 def same(case, **settings):
-    """Render with other settings; depth and picture must be the same. Return the statistics."""
+    """Render with other settings; check that depth and picture are the same. Return statistics."""
     image, isovalue, camera, expected, picture = case
     scene = Scene(image, isovalue, camera, lit=True, **settings)
     depth = scene.depth()
@@ -63,8 +63,8 @@ def test_speculation(case, limit):
 @pytest.mark.parametrize("speculation", [1, 64])
 @pytest.mark.parametrize("share", [0, 0.01, 0.03, 0.1, 0.3, 0.7, 1, 2])
 def test_memory_budget(case, share, speculation):
-    """From the least budget that can work to one that has room for the whole volume decoded: same
-    image, never over budget."""
+    """From the least budget that can work to one that holds the whole decoded volume the image is
+    the same, and never over budget."""
     image, isovalue, camera, _, _ = case
     whole = same(case)
     least = least_budget(image, isovalue, camera)
@@ -80,7 +80,7 @@ def test_memory_budget(case, share, speculation):
 
 
 def test_never_over_budget(case):
-    """Not after any pass, not while the view, the isovalue and the image's size change."""
+    """The mapper is not over budget after any pass, even while view, isovalue and size change."""
     image, isovalue, camera, _, _ = case
     budget = 3 * least_budget(image, isovalue, camera)
     scene = Scene(
@@ -115,7 +115,7 @@ def test_too_small_a_budget_is_an_error_that_names_the_least(case):
 @pytest.mark.parametrize("whole", [False, True])
 @pytest.mark.parametrize("bits", [9, 64, 100.25, 512])
 def test_stream_in_several_buffers(case, bits, whole):
-    """A stream longer than one buffer may be lies in several, wherever its blocks begin and end."""
+    """A stream longer than a buffer may be lies in several, wherever its blocks begin and end."""
     image, isovalue, camera, _, _ = case
     image = progiso.compress(progiso.decompress(image), rate=bits / 64)
     expected = Scene(image, isovalue, camera).depth()
@@ -191,7 +191,7 @@ def test_a_change_of_memory_amid_the_passes_restarts(case):
 
 
 def test_cached_blocks_are_not_decoded_again(case):
-    """A turn by a little decodes only what newly appears; the same view, nothing."""
+    """A small turn decodes only what newly appears; the same view decodes nothing."""
     image, isovalue, camera, _, _ = case
     scene = Scene(image, isovalue, camera, **CACHED)
     scene.render()
@@ -207,7 +207,7 @@ def test_cached_blocks_are_not_decoded_again(case):
 
 @pytest.mark.parametrize("settings", [{}, CACHED])
 def test_an_emptied_cache_decodes_again(case, settings):
-    """For measurements: the same image from nothing decoded."""
+    """Measurements start with nothing decoded, and get the same image."""
     image, isovalue, camera, expected, _ = case
     scene = Scene(image, isovalue, camera, **settings)
     scene.render()
@@ -220,8 +220,10 @@ def test_an_emptied_cache_decodes_again(case, settings):
 
 
 def test_cache_grows_and_shrinks_with_the_scene():
-    """A complex view makes the cache grow; after some views that need little it is small again, and
-    the images stay right."""
+    """A complex view makes the cache grow; after views that need little it is small again.
+
+    The images stay right.
+    """
     values = noise((180, 180, 180), 3)
     image = progiso.compress(make_image(values), rate=4)
     camera = orbit(reference_volume(image), 1, 4)
@@ -246,7 +248,7 @@ def test_cache_grows_and_shrinks_with_the_scene():
 
 
 def test_other_input_replaces_the_cache():
-    """What was decoded of one volume is never shown for another."""
+    """Blocks decoded of one volume are never shown for another."""
     camera = Camera((60, 50, 70), (12, 12, 12))
     first, second = (progiso.compress(make_image(blobs((25, 25, 25), seed))) for seed in (3, 4))
     expected = Scene(second, 0.1, camera).depth()

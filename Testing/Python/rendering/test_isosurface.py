@@ -15,7 +15,7 @@ RED, GREEN, BLUE = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
 @pytest.fixture(scope="module")
 def image():
-    """Distances from the centre: isosurfaces are spheres, the isovalue is their radius."""
+    """Return distances from the centre: isosurfaces are spheres, the isovalue is their radius."""
     axis = np.arange(33) - 16.0
     distance = np.sqrt(axis[:, None, None] ** 2 + axis[:, None] ** 2 + axis**2).astype(np.float32)
     return progiso.compress(make_image(distance), rate=16)
@@ -60,10 +60,8 @@ def test_a_hidden_isovalue(image):
 
 
 def test_a_changed_isovalue_keeps_colour_and_opacity(image):
-    """Also where it passes another's, and where it becomes equal to it on the way."""
-    prop = progiso.make_isosurface(
-        image, [12, 6], color=[RED, GREEN], shade=False, opacity=[0.25, 1]
-    )
+    """It keeps them where it passes another isovalue, and where both are equal on the way."""
+    prop = progiso.make_isosurface(image, [12, 6], [RED, GREEN], shade=False, opacity=[0.25, 1])
     values = prop.GetProperty().GetIsoSurfaceValues()
     values.SetValue(1, 12)
     values.SetValue(1, 15)
@@ -122,10 +120,8 @@ def test_errors_name_what_is_wrong(image, case):
 
 
 def test_windows_come_and_go(image):
-    """A prop goes on in another window, where its blocks are decoded anew."""
-    prop = progiso.make_isosurface(
-        image, [12, 6], color=[RED, GREEN], shade=False, opacity=[0.25, 1]
-    )
+    """A prop goes on in another window, where its blocks are decoded again."""
+    prop = progiso.make_isosurface(image, [12, 6], [RED, GREEN], shade=False, opacity=[0.25, 1])
     prop.GetMapper().SetDecodeWholeVolume(False)
     through = 0.25 + 0.75 * 0.25
     for _ in range(3):
@@ -133,8 +129,8 @@ def test_windows_come_and_go(image):
 
 
 def test_render(image):
-    """As the command line has it: colours by name, one or one for each isovalue."""
-    camera = progiso.view_camera(image, direction=(1, 0, 0), view_up=(0, 0, 1))
+    """Colours are given as on the command line, by name: one, or one for each isovalue."""
+    camera = progiso.view_camera(image, (1, 0, 0), (0, 0, 1))
     one, both = (
         progiso.render(
             image,

@@ -1,5 +1,5 @@
-"""Several and translucent isosurfaces against the double-precision caster; how the work is divided
-shows in no bit of them."""
+"""Several and translucent isosurfaces against the double-precision caster, however the work is
+divided."""
 
 import numpy as np
 import pytest
@@ -39,7 +39,7 @@ def field(request):
 
 
 def expected(scene, image, surfaces, end=np.inf, background=BACKGROUND, cropping=None):
-    """What the caster makes of a scene, unlit."""
+    """Return what the caster makes of a scene, unlit: its crossings and its picture."""
     crossings = crossings_of(
         reference_volume(image),
         list(surfaces),
@@ -90,7 +90,7 @@ def test_cropped_layers_are_the_casters(field, regions, settings):
 
 
 def test_layers_end_at_opaque_geometry(field):
-    """Behind a sphere there are none; its own colour is blended with those before it."""
+    """There are none behind a sphere, whose own colour is blended with those before it."""
     image, surfaces = field
     scene = ComparisonScene(ours=True)
     show(scene, image, surfaces)
@@ -134,8 +134,8 @@ def least_budget(image, surfaces, lit):
 
 @pytest.fixture(scope="module", params=[False, True], ids=["unlit", "lit"])
 def whole(request):
-    """A volume larger than the smallest cache and buffer, whether it is lit, and picture and depth
-    of one pass."""
+    """Return a volume larger than the smallest cache and buffer, whether it is lit, and picture and
+    depth of one pass."""
     image = progiso.compress(make_image(blobs((60, 64, 56), 3, waves=5)), 32)
     scene = ComparisonScene(ours=True)
     show(scene, image, NESTED).GetProperty().SetShade(request.param)
@@ -182,8 +182,8 @@ def test_division_of_the_work(whole, name):
 
 
 def test_a_partial_picture_has_no_more_than_the_complete_one(whole):
-    """Layers come in from the front: a picture on its way is nowhere nearer to nothing than one
-    before it."""
+    """Layers come in from the front: no partial picture is nearer to the background than one
+    before."""
     image, lit, picture, _ = whole
     scene = ComparisonScene(ours=True)
     show(

@@ -1,5 +1,4 @@
-"""What the mapper keeps and gives back: decoded blocks, OpenGL's objects, itself; and what it says
-when it cannot."""
+"""Blocks, OpenGL's objects and mappers that are kept, given back and copied; and errors."""
 
 import numpy as np
 import pytest
@@ -21,6 +20,7 @@ def image():
 
 
 def decoded(scene):
+    """Return how many blocks were decoded for the last image."""
     return sum(
         row["decoded_blocks"] for row in progiso.statistics(scene.mapper, scene.renderer)["passes"]
     )
@@ -65,15 +65,15 @@ def change(image, surfaces, how):
 
 @pytest.mark.parametrize("name", LOOKS)
 def test_another_look_costs_no_pass(image, name):
-    """Of opaque isosurfaces: the hits stay, the picture is composed anew."""
+    """Hits of opaque isosurfaces stay; the picture is composed anew."""
     scene, passes = change(image, OPAQUE, LOOKS[name])
     assert progiso.statistics(scene.mapper, scene.renderer)["passes"] == passes
 
 
 @pytest.mark.parametrize("name", [*LOOKS, *VIEWS])
 def test_layers_are_blended_anew_from_what_is_decoded(image, name):
-    """Of translucent isosurfaces every change restarts the picture; what its rays had met is still
-    decoded."""
+    """Every change of translucent isosurfaces restarts the picture; the blocks that its rays met
+    are still decoded."""
     scene, passes = change(image, NESTED, (LOOKS | VIEWS)[name])
     assert progiso.statistics(scene.mapper, scene.renderer)["passes"] != passes
     assert decoded(scene) <= 0.02 * sum(row["decoded_blocks"] for row in passes)
@@ -100,7 +100,7 @@ def test_a_new_isovalue_decodes_only_what_it_adds(image):
     "settings", [{}, {**CACHED, "DetailedStatistics": True}, {**CACHED, "SpeculationLimit": 1}]
 )
 def test_nothing_is_left_behind(image, settings):
-    """Mappers come and go, fifty of them: OpenGL has as many objects as after the first."""
+    """After fifty mappers OpenGL has as many objects as after the first."""
     scene = ComparisonScene(ours=True)
     scene.look_at(image)
     scene.renderer.AddActor(ball(8))
@@ -131,7 +131,7 @@ def test_released_and_rendered_again(image):
 
 
 def test_the_window_is_made_anew(image):
-    """Its context is gone, and so is what was in it."""
+    """The old window's context is gone with all that was in it."""
     scene = ComparisonScene(ours=True)
     show(scene, image, NESTED)
     first = scene.picture()
@@ -148,7 +148,7 @@ def test_the_window_is_made_anew(image):
 
 
 def test_released_while_another_window_is_current(image):
-    """Each window has one of two volumes; the first's is removed while the second is current."""
+    """Of two windows' volumes the first is removed while the second window is current."""
     scenes = ComparisonScene(ours=True), ComparisonScene(ours=True)
     for scene in scenes:
         show(scene, image, NESTED)
@@ -163,8 +163,8 @@ def test_released_while_another_window_is_current(image):
 
 
 def test_other_things_in_the_window_are_left_as_they_were(image):
-    """The mapper leaves OpenGL's state to VTK as it found it: what is drawn after it looks the same
-    as without it."""
+    """The mapper leaves OpenGL's state as it found it: what VTK draws next looks the same as
+    without it."""
     plain, scene = ComparisonScene(ours=True), ComparisonScene(ours=True)
     for each in (plain, scene):
         each.look_at(image)
@@ -196,7 +196,7 @@ def test_a_volume_is_copied(image):
 
 
 def test_a_mapper_is_copied(image):
-    """What vtkAbstractMapper copies, the clipping planes, arrives."""
+    """The copy has what vtkAbstractMapper copies: the clipping planes."""
     scene, other = ComparisonScene(ours=True), ComparisonScene(ours=True)
     show(scene, image).GetMapper().AddClippingPlane(next(planes((1, 0, 0))))
     show(other, image).GetMapper().ShallowCopy(scene.mapper)
@@ -274,8 +274,8 @@ def test_too_many_lights(image):
 @pytest.mark.parametrize("surfaces", [{}, {0.1: (*GREEN, 0.0)}, {5.0: (*GREEN, 1.0)}])
 @pytest.mark.parametrize("settings", [{}, CACHED])
 def test_nothing_to_show(image, surfaces, settings):
-    """No isovalue, one that is fully transparent, one outside the values: no error, an empty
-    picture, complete."""
+    """No isovalue, a fully transparent one and one outside the values make a complete, empty
+    picture, and no error."""
     scene = ComparisonScene(ours=True)
     show(scene, image, surfaces, **settings)
     assert not complaints(scene)

@@ -1,4 +1,4 @@
-"""What is under the mouse: hits, the picker, VTK's pickers and its hardware selector."""
+"""Hits under the mouse: the mapper's, the picker's, and those of VTK's pickers and selector."""
 
 import math
 
@@ -33,8 +33,8 @@ def image():
 
 
 def first_crossings(scene, image, surfaces, matrix=None):
-    """Return by the caster, for each pixel from the bottom left, the place and isovalue of the
-    first crossing."""
+    """Return the place and isovalue of the caster's first crossing, for each pixel from the bottom
+    left."""
     camera, volume = Camera.from_vtk(scene.camera), reference_volume(image, matrix)
     crossings = crossings_of(
         volume, sorted(surfaces), camera, SIZE, scene.camera.GetClippingRange()
@@ -71,7 +71,7 @@ def test_hits_are_the_casters(image, surfaces, matrix):
 
 
 def test_the_first_layer_is_picked(image):
-    """Of a translucent surface the place of the first hit."""
+    """A translucent surface is picked where it is hit first."""
     scene = ComparisonScene(ours=True)
     show(scene, image, NESTED)
     scene.render()
@@ -112,7 +112,7 @@ def two_volumes(image):
 
 
 def test_the_nearest_volume_is_picked(image):
-    """Of two that overlap; of those alone that are pickable, visible, or in the list."""
+    """Of two that overlap the nearer is picked, if it is pickable, visible and in the list."""
     scene = two_volumes(image)
     depths = [
         np.nan_to_num(progiso.depth(volume.GetMapper()), posinf=1e9)[::-1]
@@ -145,7 +145,8 @@ def test_the_nearest_volume_is_picked(image):
 
 
 def test_the_picker_keeps_to_its_renderer(image):
-    """A viewport's own pixels; nothing outside, and nothing for a renderer that shows none."""
+    """It picks in a viewport's own pixels, none outside, and nothing for a renderer that shows
+    none."""
     scene = ComparisonScene(ours=True)
     show(scene, image)
     scene.renderer.SetViewport(0.5, 0, 1, 1)
@@ -164,7 +165,7 @@ def test_the_picker_keeps_to_its_renderer(image):
 
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
 def test_what_is_cut_away_is_not_picked(image, surfaces):
-    """Cropped and clipped: what shows behind the cut is picked."""
+    """What shows behind a crop or a clip is picked."""
     scene = ComparisonScene(ours=True)
     mapper = show(scene, image, surfaces).GetMapper()
     whole = scene.picture() is not None and first_crossings(scene, image, surfaces)
@@ -227,7 +228,7 @@ def select(scene, association, area):
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
 @pytest.mark.parametrize("matrix", [None, TURNED])
 def test_the_selector_finds_cells(image, surfaces, matrix):
-    """Of each pixel the cell of the image that holds the first hit."""
+    """Each pixel has the cell of the image that holds the first hit."""
     scene = ComparisonScene(ours=True)
     show(scene, image, surfaces, matrix=matrix)
     scene.render()
@@ -252,7 +253,7 @@ def test_the_selector_finds_cells(image, surfaces, matrix):
 
 
 def test_the_selector_tells_props_apart(image):
-    """Two volumes and a sphere: who is in front."""
+    """Of two volumes and a sphere it finds the one in front."""
     scene = two_volumes(image)
     sphere = ball(9, centre=(10, 0, 15))
     scene.renderer.AddActor(sphere)
@@ -279,8 +280,8 @@ def test_the_picture_after_a_selection_is_the_same(image, surfaces):
 
 
 def test_vtk_pickers(image):
-    """vtkPropPicker finds the volume where it shows, vtkWorldPointPicker the place by the depth
-    buffer."""
+    """vtkPropPicker finds the volume where it shows; vtkWorldPointPicker finds the place by the
+    depth buffer."""
     scene = ComparisonScene(ours=True)
     show(scene, image)
     scene.render()
@@ -296,9 +297,9 @@ def test_vtk_pickers(image):
 
 @pytest.mark.parametrize("kind", [vtkCellPicker, vtkPointPicker, vtkVolumePicker])
 def test_pickers_that_read_samples(image, kind):
-    """In a compressed volume there are none to read: it is not picked.
+    """They find no compressed volume, as it has no samples to read.
 
-    In a plain one VTK picks by opacities, not isovalues.
+    Of a plain one VTK picks by opacities, not isovalues.
     """
     scene = ComparisonScene(ours=True)
     show(scene, image)

@@ -1,4 +1,4 @@
-"""The image appears pass by pass in a window that someone watches, and complete everywhere else."""
+"""Images appear pass by pass in a window that someone watches, and complete everywhere else."""
 
 import numpy as np
 import pytest
@@ -41,15 +41,14 @@ def image():
 
 @pytest.fixture(scope="module")
 def complete(image):
-    """Depth image of a window that nobody watches."""
+    """Return the depth image of a window that nobody watches."""
     scene = Scene(image, 0.1, orbit(reference_volume(image), 1, 4))
     assert scene.render() == 1
     return scene.depth()
 
 
 def test_watched_window_refines(image, complete):
-    """Each render adds to the image and asks for another, until it is complete; then it asks no
-    more."""
+    """Each render adds to the image and asks for another, until it is complete."""
     scene = Watched(image, TimeAllowance=0.0)
     scene.window.Render()
     fractions = [scene.mapper.GetCompletedFraction()]
@@ -64,7 +63,7 @@ def test_watched_window_refines(image, complete):
 
 
 def test_partial_images_hold_only_final_pixels(image, complete):
-    """What shows early is right already: a pixel is the complete image's or still empty."""
+    """A pixel is the complete image's or still empty."""
     scene = Watched(image, TimeAllowance=0.0)
     scene.window.Render()
     partial = progiso.depth(scene.mapper)
@@ -82,8 +81,8 @@ def test_time_allowance_holds(image, complete):
 
 
 def test_captures_are_complete(image, complete):
-    """Without swapping buffers, which is how pictures of a watched window are taken, the whole
-    image is waited for."""
+    """Pictures of a watched window are taken without swapping buffers: they wait for the whole
+    image."""
     scene = Watched(image, TimeAllowance=0.0)
     scene.window.Render()
     assert not scene.mapper.GetConverged()

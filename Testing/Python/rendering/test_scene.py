@@ -1,5 +1,4 @@
-"""The isosurface among other things: depth buffer, opaque and translucent geometry, light, several
-volumes."""
+"""Isosurfaces in a scene: depth buffer, opaque and translucent geometry, light, several volumes."""
 
 import ctypes
 
@@ -46,8 +45,10 @@ def flat(scene, rgb):
 
 
 def piece_of(compressed, axis, first, last):
-    """A part of a compressed volume with the whole stream; samples count from the volume's own
-    first one."""
+    """Return a part of a compressed volume with the whole stream.
+
+    Samples count from the volume's own first one.
+    """
     part = vtkImageData()
     part.ShallowCopy(compressed)
     extent = list(compressed.GetExtent())
@@ -83,7 +84,7 @@ def test_pieces_meet_without_a_seam(axis, cells, settings):
 
 
 def wall(camera, distance, rgb, opacity=1.0):
-    """A wide square of one colour, `distance` from the camera and across its view."""
+    """Return a wide square of one colour, `distance` from the camera and across its view."""
     position, forward = np.array(camera.position), np.subtract(camera.focal_point, camera.position)
     forward /= np.linalg.norm(forward)
     right = np.cross(forward, camera.view_up)
@@ -111,7 +112,7 @@ def across(camera, size):
 
 @pytest.mark.parametrize("parallel", [False, True])
 def test_depth_buffer(image, parallel):
-    """VTK composites by the depth of the surface, to the last places of the depth buffer."""
+    """VTK composites by the surface's depth, to the last places of the depth buffer."""
     volume = reference_volume(image)
     camera = orbit(volume, 1, 4)
     if parallel:
@@ -155,7 +156,7 @@ def test_opaque_geometry_hides_and_is_hidden(image, distance):
 
 
 def test_translucent_geometry_in_front_blends(image):
-    """The isosurface is drawn in the opaque pass, so that what is translucent covers it and is not
+    """The isosurface is drawn in the opaque pass: what is translucent covers it and is not
     overwritten."""
     camera = orbit(reference_volume(image), 1, 4)
     scene = Scene(image, ISOVALUE, camera, SIZE)
@@ -168,7 +169,7 @@ def test_translucent_geometry_in_front_blends(image):
 
 
 def test_two_isosurfaces(image):
-    """Two volumes in one window: the nearer hit shows."""
+    """Of two volumes in one window the nearer hit shows."""
     camera = orbit(reference_volume(image), 1, 4)
     first, second = Scene(image, -0.2, camera, SIZE), Scene(image, 0.3, camera, SIZE)
     alone = [first.depth(), second.depth()]
@@ -197,7 +198,7 @@ def test_visibility_and_background(image):
 )
 @pytest.mark.parametrize("spacing", [(1, 1, 1), (1, 2, 0.5)])
 def test_light_falls_on_smooth_normals(spacing, direction):
-    """A sphere is lit like a sphere: no facet, no block, no seam, whatever the geometry."""
+    """A sphere is lit like a sphere, without facet, block or seam, in any geometry."""
     shape, radius = (48, 48, 48), 18.0
     z, y, x = np.indices(shape)
     matrix = (np.eye(3) if direction is None else direction) * spacing
@@ -231,7 +232,7 @@ def test_light_falls_on_smooth_normals(spacing, direction):
 
 def test_ambient_diffuse_and_colour(image):
     """Without shading the colour is the transfer function's at the isovalue; ambient light alone
-    gives its share of it."""
+    gives its share."""
     scene = Scene(image, ISOVALUE, orbit(reference_volume(image), 1, 4), SIZE)
     function = vtkColorTransferFunction()
     function.AddRGBPoint(ISOVALUE - 1, 0, 0, 1)
@@ -264,8 +265,7 @@ def test_viewports(image):
 
 
 def test_gl_errors_are_counted(image):
-    """The count that every scene's render is checked by does count: an error made on purpose shows
-    in it."""
+    """An error made on purpose shows in the count that every scene checks."""
     scene = Scene(image, ISOVALUE, orbit(reference_volume(image), 1, 4), SIZE)
     scene.render()
     library = {
@@ -307,7 +307,7 @@ def test_errors_name_what_is_wrong(name):
 
 
 def mesh_scene(image, isovalue, scene):
-    """The mesh of an isosurface in a window like a scene's, with its camera and lights."""
+    """Return a window like a scene's, with its camera and lights, that shows the mesh."""
     contour = vtkFlyingEdges3D()
     contour.SetInputData(image)
     contour.SetValue(0, isovalue)
@@ -327,8 +327,8 @@ def mesh_scene(image, isovalue, scene):
 
 
 def test_lit_like_meshes():
-    """With a light from beside and behind the surface looks like FlyingEdges' mesh, and not as
-    VTK's volume mapper has it."""
+    """Lit from beside and behind, the surface looks like FlyingEdges' mesh, not as in VTK's volume
+    mapper."""
     image = make_image(blobs((40, 40, 40)))
     pictures = {}
     for like_meshes in (True, False):

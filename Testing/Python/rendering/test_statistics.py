@@ -1,4 +1,4 @@
-"""The statistics say what happened, and the memory stays within its formula."""
+"""Statistics say what happened, and memory stays within its formula."""
 
 import numpy as np
 import pytest
@@ -90,8 +90,7 @@ def test_table_says_the_same(scene):
 
 
 def test_details_are_there_when_asked_for(scene):
-    """Every stage that ran for the image has its time; without details nobody counts blocks or asks
-    the clock."""
+    """Every stage that ran has its time; without details nobody counts blocks or asks the clock."""
     statistics = scene.statistics()
     assert set(statistics["stage_ms"]) == set(statistics["stages"])
     assert all(
@@ -120,8 +119,8 @@ def test_memory_adds_up(scene):
 @pytest.mark.parametrize("size", [(64, 48), (640, 360)])
 @pytest.mark.parametrize("shape", [(17, 18, 19), (100, 90, 110)])
 def test_memory_formula(shape, size, settings):
-    """Beside payload and cache: three bytes for a block, forty for a pixel."""
-    image = progiso.compress(make_image(noise(shape)), rate=1)
+    """Beside stream and cache there are three bytes a block and forty a pixel."""
+    image = progiso.compress(make_image(noise(shape)), 1)
     scene = Scene(image, 0.5, orbit(reference_volume(image), 1, 4), size, **settings)
     scene.render()
     check_memory(image, scene.statistics())
@@ -151,7 +150,7 @@ def needs(volume, lit=True, **settings):
 
 
 def test_a_small_volume_needs_no_cache(volume):
-    """Decoded as a whole it needs no stream, no map, no waiting rays, and one pass."""
+    """Decoded as a whole it needs no stream, no block map, no waiting rays, and one pass."""
     buffers, stages = needs(volume)
     assert set(buffers) == ALWAYS | {"normals"}
     assert buffers["cache_values"] == 256 * BLOCKS
@@ -188,15 +187,15 @@ def test_an_unlit_surface_needs_no_normals(volume, settings):
 
 
 def test_speculation_takes_no_memory(volume):
-    """It has no buffer and no stage of its own: the rays look ahead."""
+    """It has no buffer and no stage of its own, as rays look ahead."""
     with_it, stages = needs(volume, **CACHED)
     without, same_stages = needs(volume, SpeculationLimit=1, **CACHED)
     assert with_it == without and stages == same_stages
 
 
 def feature(volume, change, isovalues=((0.5, 1.0),), **settings):
-    """Buffers and stages of a lit scene with isovalues of these opacities, after `change` of the
-    mapper."""
+    """Return buffers and stages of a lit scene with isovalues of these opacities, after `change` of
+    the mapper."""
     image, camera = volume
     scene = Scene(image, 0.5, camera, SIZE, lit=True, **settings)
     opacities = vtkPiecewiseFunction()
@@ -237,7 +236,7 @@ def test_what_features_take(volume, settings):
 
 @pytest.mark.parametrize("settings", [{}, CACHED])
 def test_what_colours_take(volume, settings):
-    """As much again for the decoded samples, 4 bytes a pixel and the palette."""
+    """Colours take as much again for decoded samples, 4 bytes a pixel, and the palette."""
     image, _ = volume
     plain, stages = feature(volume, lambda mapper: None, **settings)
     coloured, more = feature(volume, lambda mapper: mapper.SetColorInputData(image), **settings)

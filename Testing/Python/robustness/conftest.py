@@ -21,5 +21,5 @@ def settings(request):
 
 @pytest.fixture
 def uncounted(monkeypatch):
-    """Errors that are provoked are not to be counted as the mapper's."""
+    """Have provoked errors not counted as the mapper's."""
     monkeypatch.setenv("PROGISO_GL_DEBUG", "0")

@@ -19,7 +19,7 @@ from helpers.scenes import CACHED
     "file", ["BlockRanges.comp", "CastRays.comp", "PlanPass.comp", "Composite.frag"]
 )
 def test_a_shader_does_not_compile(image, file):
-    """For as long as that is so: one error a render, with the compiler's own words."""
+    """There is one error a render, with the compiler's own words, for as long as that is so."""
     scene = ComparisonScene(ours=True)
     scene.render()  # makes the context
     show(scene, image, OPAQUE, **CACHED).GetProperty().ShadeOn()
@@ -105,12 +105,13 @@ NV_texture_barrier NVX_gpu_memory_info
 
 @pytest.fixture
 def mesa():
+    """Skip where Mesa does not make the contexts."""
     if "OS" not in vtkRenderWindow().GetClassName():
         pytest.skip("only Mesa's contexts can be told to be older than they are")
 
 
 def test_plain_opengl_4_3(mesa, tmp_path):
-    """Without extensions beyond it, the pictures are the same, bit for bit."""
+    """Without extensions beyond 4.3 the pictures are the same, bit for bit."""
     full, floor = tmp_path / "full.npz", tmp_path / "floor.npz"
     run_program(PICTURES, file=str(full))
     version = run_program(
@@ -131,7 +132,7 @@ def test_plain_opengl_4_3(mesa, tmp_path):
 
 
 def test_opengl_below_4_3(mesa):
-    """Without compute shaders: one error a render, which tells what is missing."""
+    """Without compute shaders there is one error a render, which says what is missing."""
     printed = run_program(
         REFUSED,
         MESA_GL_VERSION_OVERRIDE="4.2",
@@ -147,8 +148,10 @@ def test_opengl_below_4_3(mesa):
 @pytest.mark.parametrize("closed", ["finalized", "destroyed"])
 @pytest.mark.parametrize("other", [False, True])
 def test_a_context_goes_while_the_mapper_is_out_of_the_scene(image, settings, closed, other):
-    """Nobody tells the mapper; then it is shown again, in that window or another, beside a mapper
-    that was made meanwhile."""
+    """Nobody tells the mapper.
+
+    It is shown again, in that window or another, beside a mapper made meanwhile.
+    """
     first, second = ComparisonScene(ours=True), ComparisonScene(ours=True)
     volume = show(first, image, NESTED, **settings)
     expected = first.picture()
@@ -175,8 +178,7 @@ def test_a_context_goes_while_the_mapper_is_out_of_the_scene(image, settings, cl
 
 
 def test_debugging_is_silent(image, monkeypatch):
-    """OpenGL's debug output has nothing to say of high or medium severity, nor of anything that is
-    undefined or deprecated."""
+    """OpenGL's debug output has nothing of high or medium severity, undefined or deprecated."""
     monkeypatch.setenv("PROGISO_GL_DEBUG", "0")
     scene, found = ComparisonScene(ours=True), []
     scene.render()

@@ -1,5 +1,7 @@
-"""The GPU's memory runs out. One clear error, nothing drawn, nothing left behind, and the right
-picture as soon as that is possible."""
+"""The GPU's memory runs out: one clear error, nothing drawn, nothing left behind.
+
+The picture is right again as soon as that is possible.
+"""
 
 import re
 
@@ -20,8 +22,8 @@ TARGETS = {
 
 @pytest.mark.parametrize("targets", TARGETS)
 def test_no_room(uncounted, image, settings, targets):
-    """Each allocation in turn is refused by the driver: an error that says what to do, then the
-    right picture."""
+    """The driver refuses each allocation in turn: an error says what to do, then the picture is
+    right."""
     scene = compiled_scene(image, settings, NESTED if settings else OPAQUE)
     first, failures = scene.picture(), 0
     while True:
@@ -44,7 +46,7 @@ def test_no_room(uncounted, image, settings, targets):
 
 
 def test_no_room_where_it_is_used(uncounted, image, settings):
-    """Some drivers make memory when a scene first touches it."""
+    """Some drivers allocate memory when a shader first touches it."""
     scene = compiled_scene(image, settings)
     first = scene.picture()
     scene.volumes[0].ReleaseGraphicsResources(scene.window)
@@ -68,7 +70,7 @@ def test_no_room_where_it_is_used(uncounted, image, settings):
 
 
 def test_a_budget_too_small_leaves_no_old_picture(image, settings):
-    """While it is too small the camera moves; then the picture is the new camera's."""
+    """Meanwhile the camera moves; afterwards the picture is the new camera's."""
     scene = compiled_scene(image, settings)
     first = scene.picture()
     scene.mapper.SetMemoryBudget(1000)
@@ -123,8 +125,7 @@ print(*messages)
 
 
 def test_memory_that_is_really_not_there():
-    """64 MiB of decoded blocks do not fit into what the process may have; they do as soon as it may
-    have more."""
+    """64 MiB of decoded blocks do not fit until the process may have more memory."""
     if "vtkOSOpenGLRenderWindow" != vtkRenderWindow().GetClassName():
         pytest.skip("the memory of a GPU is not this process's; see Testing/gpu_faults.py")
     printed = run_program(REAL, PROGISO_GL_DEBUG="0")

@@ -1,5 +1,5 @@
-"""Damaged streams and hostile metadata: images of them are wrong, but complete, repeatable and
-without an error of OpenGL, or there is one clear error."""
+"""Damaged streams and hostile metadata: the image is wrong, but complete and repeatable, or there
+is one clear error; never one of OpenGL."""
 
 import subprocess
 import sys
@@ -70,8 +70,8 @@ def window():
 
 @pytest.fixture(scope="module", params=DAMAGE)
 def damaged(request):
-    """A compressed volume with a damaged stream, and an isovalue in the middle of what libzfp
-    decodes of it."""
+    """Return a compressed volume with a damaged stream, and an isovalue in the middle of what
+    libzfp decodes of it."""
     image = progiso.compress(make_image(blobs(SHAPE, 3)), 8)
     stream = vtk_to_numpy(image.GetFieldData().GetAbstractArray(PREFIX + "Stream"))
     DAMAGE[request.param](
@@ -87,7 +87,7 @@ def damaged(request):
 
 
 def shows(image, isovalues, opacity=1.0, **settings):
-    """Render twice; the images are the same. Return picture and depth."""
+    """Render twice, check that the images are the same, return picture and depth."""
     results = []
     for _ in range(2):
         scene = Scene(image, isovalues[0], CAMERA, SIZE, lit=True, **settings)
@@ -149,8 +149,8 @@ def infinite_block(sign):
 
 @pytest.mark.parametrize("sign", [-1, 1])
 def test_infinite_values_hide_no_other_surface(sign):
-    """A macrocell with a block of infinite values: its other blocks are shown as before."""
-    image = progiso.compress(make_image(blobs((16, 16, 16), 5)), rate=32)
+    """Other blocks of a macrocell with infinite values are shown as before."""
+    image = progiso.compress(make_image(blobs((16, 16, 16), 5)), 32)
     camera = Camera((40.0, 45.0, 50.0), (7.5, 7.5, 7.5), view_angle=25.0)
     before = Scene(image, 0.1, camera, SIZE).depth()
     metadata(image, "Stream")[:256] = infinite_block(sign)
@@ -164,8 +164,8 @@ def test_infinite_values_hide_no_other_surface(sign):
 
 @pytest.mark.parametrize("low, high", [(0, 1e-30), (-1e30, 1e30), (7, 8), (-1e300, 1e300)])
 def test_lying_range(low, high):
-    """The range of values is told to users; nothing is left out by it."""
-    image = progiso.compress(make_image(noise((12, 12, 12))), rate=8)
+    """The range of values is for users; nothing is left out by it."""
+    image = progiso.compress(make_image(noise((12, 12, 12))), 8)
     expected = shows(image, [1.0], **CACHED)
     metadata(image, "Range")[:] = low, high
     assert shows(image, [1.0], **CACHED) == expected
@@ -189,8 +189,8 @@ GEOMETRIES = {
 
 @pytest.mark.parametrize("case", GEOMETRIES)
 def test_geometry(case):
-    """One error, and nothing drawn, where rays would have no end."""
-    image = progiso.compress(make_image(noise((9, 9, 9))), rate=8)
+    """Where rays would have no end there is one error and nothing is drawn."""
+    image = progiso.compress(make_image(noise((9, 9, 9))), 8)
     scene = Scene(image, 1.0, CAMERA, SIZE, **CACHED)
     scene.renderer.GetActiveCamera().SetClippingRange(0.1, 500)
     scene.window.Render()
@@ -270,7 +270,7 @@ def test_origin_of_two_numbers(folder):
 
 
 def test_command_line(folder):
-    """Exit status 1 and one line."""
+    """The exit status is 1, the error one line."""
     for change, word in (
         METADATA["truncated"],
         METADATA["range reversed"],

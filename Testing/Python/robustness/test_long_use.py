@@ -1,5 +1,5 @@
-"""Many mappers, many volumes, many windows: what they leave behind, what they share, and that none
-disturbs another."""
+"""Many mappers, volumes and windows: what they leave behind and share, and that none disturbs
+another."""
 
 import gc
 import sys
@@ -72,7 +72,7 @@ def test_mappers_come_and_go(image):
 
 
 def test_fifty_volumes(image):
-    """In one scene, in rows: each shows as it does alone, and they share their shaders."""
+    """In rows of one scene, each shows as it does alone, and they share their shaders."""
     size, small = (300, 160), progiso.compress(make_image(blobs((12, 14, 10), 5, waves=1)), 16)
     scene, alone = ComparisonScene(ours=True, size=size), ComparisonScene(ours=True, size=size)
     places = [np.array((12 * (i % 10), 16 * (i // 10), 0)) for i in range(VOLUMES)]
@@ -117,7 +117,7 @@ SCENES = [
 
 
 def frames(image, surfaces, settings):
-    """Pictures of a window of its own, as the camera goes round."""
+    """Return pictures of a window of its own, as the camera goes round."""
     scene = ComparisonScene(ours=True, size=(96, 80))
     show(scene, image, surfaces, **settings).GetProperty().ShadeOn()
     pictures = []
@@ -129,8 +129,8 @@ def frames(image, surfaces, settings):
 
 
 def test_each_thread_has_its_window(image):
-    """Four threads, each with a window that it makes, renders and closes: the pictures of one
-    thread alone."""
+    """Each of four threads makes, renders and closes a window: its pictures are those of one thread
+    alone."""
     expected = [frames(image, *scene) for scene in SCENES]
     found = [None] * len(SCENES)
 
@@ -183,7 +183,7 @@ print("good")
 
 
 def test_windows_share_their_contexts():
-    """As VTK's windows do under X: the names of one's buffers are known in the other, and nobody
+    """VTK's windows do so under X: names of one's buffers are known in the other, and neither
     deletes the other's."""
     if "OS" not in vtkRenderWindow().GetClassName():
         pytest.skip("this wants a display of Mesa's")

@@ -1,4 +1,4 @@
-"""Observers of the mapper and its window do anything: the mapper survives it."""
+"""Observers of the mapper and its window may do anything: the mapper survives it."""
 
 import gc
 import time
@@ -19,7 +19,7 @@ class Trouble(Exception):
 
 
 def observed(scene, event, does, on=None):
-    """Add an observer that does something once."""
+    """Add an observer that does something once; return a list that is filled when it has."""
     done = []
 
     def act(caller, _event):
@@ -33,7 +33,7 @@ def observed(scene, event, does, on=None):
 
 @pytest.fixture
 def drawn(image):
-    """A scene whose image takes many passes, and its picture."""
+    """Return a scene whose image takes many passes, and its picture."""
     scene = ComparisonScene(ours=True)
     show(scene, image, OPAQUE, **CACHED, SpeculationLimit=1).GetProperty().ShadeOn()
     expected = scene.picture()
@@ -44,7 +44,7 @@ def drawn(image):
 
 @pytest.mark.parametrize("event", ["ProgressEvent", "StartEvent", "EndEvent", "AbortCheckEvent"])
 def test_an_exception_in_an_observer(drawn, event, capfd):
-    """It is told and goes no farther."""
+    """It is reported and goes no farther."""
     scene, expected = drawn
 
     def fail(_caller):
@@ -60,7 +60,7 @@ def test_an_exception_in_an_observer(drawn, event, capfd):
 
 
 def test_an_observer_aborts(drawn):
-    """After some pass; the next render goes on from there."""
+    """The next render goes on after the pass that was the last."""
     scene, expected = drawn
     done = observed(scene, "AbortCheckEvent", lambda window: window.SetAbortRender(1), scene.window)
     scene.window.Render()
@@ -70,7 +70,7 @@ def test_an_observer_aborts(drawn):
 
 
 def other_window(scene, image):
-    """A window of its own for the scene's mapper."""
+    """Return a window of its own for the scene's mapper."""
     other = ComparisonScene(ours=True)
     other.look_at(image)
     volume = type(scene.volumes[0])()
@@ -105,8 +105,10 @@ DEEDS = {
 @pytest.mark.parametrize("event", ["ProgressEvent", "AbortCheckEvent", "StartEvent"])
 @pytest.mark.parametrize("deed", DEEDS)
 def test_an_observer_does_anything(drawn, image, event, deed):
-    """While the mapper renders: that may spoil the picture, but nothing else; undone, the picture
-    is right."""
+    """While the mapper renders, that may spoil the picture, but nothing else.
+
+    Undone, the picture is right.
+    """
     scene, expected = drawn
     mapper, volume, size = scene.mapper, scene.volumes[0], scene.window.GetSize()
     targets = {"ProgressEvent": mapper, "AbortCheckEvent": scene.window, "StartEvent": volume}

@@ -1,4 +1,4 @@
-"""What `cmake --install` makes of the ParaView build works wherever it is moved to."""
+"""The installation of the ParaView build works wherever it is moved to."""
 
 import subprocess
 
@@ -14,13 +14,14 @@ PLUGINS = "lib/paraview-5.11/plugins"
 
 @pytest.fixture(scope="module")
 def prefix(build, tmp_path_factory):
-    """An installation that was moved after it was made."""
+    """Return an installation that was moved after it was made."""
     folder = tmp_path_factory.mktemp("install")
     run("cmake", "--install", build, "--prefix", folder / "made")
     return (folder / "made").rename(folder / "moved")
 
 
 def run(*command, **options):
+    """Run a command; return what it prints."""
     done = subprocess.run(
         [str(part) for part in command], capture_output=True, text=True, timeout=600, **options
     )
@@ -29,7 +30,7 @@ def run(*command, **options):
 
 
 def cached(build, name):
-    """A variable of the build's CMake cache."""
+    """Return a variable of the build's CMake cache."""
     lines = (build / "CMakeCache.txt").read_text().splitlines()
     (value,) = [line.split("=", 1)[1] for line in lines if line.startswith(f"{name}:")]
     return value

@@ -1,4 +1,4 @@
-"""ParaView's own parallelism: a volume in pieces on several processes looks as it does on one."""
+"""ParaView's own parallelism: a volume in pieces on several processes looks as on one."""
 
 import json
 
@@ -37,12 +37,13 @@ MPI = {
 
 
 def mpiexec(processes, *command):
+    """Run a command on several processes; return its output."""
     return under_x("mpiexec", "--oversubscribe", "-n", processes, *command, **MPI)
 
 
 @pytest.fixture(scope="module")
 def shown(build, tmp_path_factory):
-    """Pictures by number of processes and case."""
+    """Return pictures by number of processes and case."""
     import progiso
 
     folder = tmp_path_factory.mktemp("parallel")

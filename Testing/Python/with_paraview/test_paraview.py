@@ -1,5 +1,4 @@
-"""The ParaView stack: the plugin in pvpython and pvbatch, and this folder's other tests on
-ParaView's own VTK."""
+"""The ParaView stack: the plugin in pvpython and pvbatch, and other folders' tests on its VTK."""
 
 import json
 import os
@@ -23,7 +22,7 @@ def packages(build):
 
 @pytest.fixture(scope="module", params=["pvpython", "pvbatch"])
 def shown(request, build, packages, tmp_path_factory):
-    """Run the script that shows everything; return the folder with its pictures."""
+    """Run the script that shows everything; return the folder with its pictures and figures."""
     import progiso
 
     folder = tmp_path_factory.mktemp(request.param)
@@ -62,7 +61,7 @@ def test_facts(shown):
 
 
 def test_ways_to_the_same_picture(shown):
-    """Compressed on the fly or before, within a budget, with and without speculation: not one pixel
+    """Compressed on the fly or before, within a budget, with and without speculation, no pixel
     differs."""
     for ways in (("plain", "compressed"), ("whole", "budget", "no-speculation")):
         first, *others = (pictures.read_png(shown / f"paraview-{way}.png") for way in ways)

@@ -1,5 +1,4 @@
-"""The plugin, script by script: each of scripts/ checks what it shows and prints what it found as
-JSON."""
+"""The plugin, script by script: each of scripts/ checks what it shows, and prints JSON."""
 
 import json
 import os

@@ -1,6 +1,8 @@
-"""Shows an isosurface in `pyvistaqt.QtInteractor` and prints as JSON how it refined: fractions
-complete after each image, the turns of Qt's event loop before it, and whether it ended as the image
-that is made at once. Argument: where to save a picture of the window."""
+"""Shows an isosurface in `pyvistaqt.QtInteractor` and prints as JSON how it refined.
+
+That is the fractions complete after each image, the turns of Qt's event loop before it, and whether
+it ended as the image that is made at once. The argument is where to save a picture of the window.
+"""
 
 import json
 import sys

@@ -1,5 +1,4 @@
-"""The gallery's examples run, on less data and in small windows, and show something; their pictures
-are there."""
+"""The gallery's examples run, on less data and in small windows, and their pictures are there."""
 
 import importlib.util
 
@@ -34,7 +33,7 @@ def drawn(name, size):
 
 
 def shown(pixels):
-    """Share of the pixels that are not the background, which is in a bottom corner."""
+    """Return the share of pixels that are not the background, which is in a bottom corner."""
     return np.mean(np.abs(pixels.astype(int) - pixels[-1, 0]).max(axis=2) > 20)
 
 
@@ -49,7 +48,7 @@ def test_example(name):
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_picture(name):
-    """It is there, small, and in the table."""
+    """The picture is there, small, and in the table."""
     file = GALLERY / f"{name}.png"
     assert file.stat().st_size < 150 * 1024 and 0.1 < shown(read_png(file)) < 0.95
     table = (GALLERY / "README.md").read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""pyvista's ghost points are hidden."""
+"""Points that are ghosts in pyvista are hidden."""
 
 import numpy as np
 import pytest

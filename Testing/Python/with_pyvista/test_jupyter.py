@@ -1,5 +1,4 @@
-"""pyvista's server backend in Jupyter: a real kernel runs a notebook, and what a browser would get
-are complete pictures."""
+"""pyvista's server backend in Jupyter: a kernel runs a notebook, a browser gets its pictures."""
 
 import asyncio
 import importlib.util
@@ -67,7 +66,7 @@ print(json.dumps(dict(camera=told, off_screen=bool(plotter.render_window.GetOffS
 
 
 class Notebook:
-    """A notebook whose cells run in a kernel one by one. For an ``async with`` statement."""
+    """A notebook whose cells run in a kernel one by one, for an `async with` statement."""
 
     def __init__(self):
         import nbclient
@@ -107,7 +106,7 @@ class Notebook:
 
 
 def complete_picture(isovalue, camera):
-    """What is to be seen: rendered here, off-screen."""
+    """Return what is to be seen, rendered here without a display."""
     names = {}
     exec(SCENE, names)
     pyvista.OFF_SCREEN, before = True, pyvista.OFF_SCREEN
@@ -151,8 +150,11 @@ async def look(on_screen):
 
 @pytest.mark.parametrize("on_screen", [False, True])
 def test_pictures_are_complete(lacking, on_screen):
-    """At first, when a mouse has turned the camera, and when a cell has changed the isovalue: also
-    in a window that is not off-screen, which trame renders once and no more."""
+    """Also in a window on a display, which trame renders once and no more.
+
+    Pictures are taken at first, after a mouse turned the camera, and after a cell changed the
+    isovalue.
+    """
     for module in ("nbclient", "ipykernel", "ipywidgets", "trame_pyvista", "nest_asyncio2"):
         if not importlib.util.find_spec(module):
             lacking(f"there is no {module}")

@@ -1,4 +1,4 @@
-"""Colours and scalar bars of isosurfaces in a plotter, and what is wrong with others."""
+"""Colours and scalar bars of isosurfaces in a plotter, and arguments that are wrong."""
 
 import warnings
 
@@ -10,7 +10,7 @@ pyvista = pytest.importorskip("pyvista")
 
 
 def test_colours_for_each_isovalue(plotter, ball):
-    """In every form that pyvista takes for a colour; one alone is not taken for several."""
+    """A colour may have every form that pyvista takes; a single one is not taken for several."""
     prop = plotter.progiso.add_isosurface(
         ball, [12, 6], color=["red", (0, 0, 255)], opacity=[0, 1], lighting=False
     )
@@ -41,7 +41,7 @@ def test_cmap_colours_by_isovalue(plotter, ball):
 
 
 def test_several_isovalues_are_coloured_by_value(plotter, ball):
-    """With the theme's colours over the range of all values, and a scalar bar that says so."""
+    """They have the theme's colours over the range of all values, and a scalar bar that says so."""
     prop = plotter.progiso.add_isosurface(ball, [5, 12], lighting=False)
     low, high = ball.progiso.info["range"]
     assert plotter.scalar_bars["distance"].GetLookupTable().GetRange() == pytest.approx((low, high))
@@ -67,8 +67,10 @@ def test_log_scale(plotter, ball):
 
 
 def test_a_shared_scalar_bar_tells_everyones_colours(plotter, ball):
-    """Bars of one title are one bar: where a second surface widens it, the first one's colour
-    follows."""
+    """Bars of one title are one bar.
+
+    Where a second surface widens it, the first one's colour follows.
+    """
     prop = plotter.progiso.add_isosurface(ball, 10, cmap="gray", clim=[0, 10], lighting=False)
     assert colour(plotter) == (1, 1, 1)
     plotter.progiso.add_isosurface(ball, 3, cmap="gray", clim=[0, 20], lighting=False)

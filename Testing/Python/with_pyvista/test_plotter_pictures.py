@@ -19,7 +19,7 @@ pyvista = pytest.importorskip("pyvista")
 
 @pytest.fixture
 def watched():
-    """A plotter in whose window an image is growing, a pass a render, and the prop."""
+    """Yield a plotter in whose window an image is growing, a pass a render, and the prop."""
     image = pyvista.ImageData(dimensions=(64, 56, 60))
     image["field"] = blobs((60, 56, 64), 12, waves=6).ravel()
     plotter = new_plotter()
@@ -56,7 +56,7 @@ def test_screenshots_are_complete(watched, arguments):
 
 
 def test_movies_are_complete(watched):
-    """Every frame; a writer that only keeps them stands for a movie's."""
+    """Every frame is; a writer that only keeps frames stands for a movie's."""
     plotter, prop = watched
     frames = []
 
@@ -72,8 +72,7 @@ def test_movies_are_complete(watched):
 
 
 def test_images_for_browsers_are_complete(watched, tmp_path):
-    """As trame, which pyvista's server backend in Jupyter is, asks VTK for them: an off-screen
-    window's JPEG."""
+    """trame, pyvista's server backend in Jupyter, asks VTK for an off-screen window's JPEG."""
     plotter, prop = watched
     plotter.render_window.SetOffScreenRendering(True)
     prop.GetMapper().EmptyCache()
@@ -141,8 +140,7 @@ plotter.show(auto_close=False)
 
 
 def test_passes_show_on_screen(lacking, tmp_path):
-    """In show(), as it is used: an interactor's loop and timers make the image grow until it is
-    complete."""
+    """In show() an interactor's loop and timers make the image grow until it is complete."""
     if not shutil.which("xvfb-run"):
         lacking("needs xvfb-run")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}

@@ -1,4 +1,4 @@
-"""pyvista, as its users have it: accessor, plotter component, and pictures against baselines."""
+"""pyvista's accessor and plotter component, and pictures against baselines."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ SIZE = (300, 300)
 
 
 def grid(values, **geometry):
-    """Make a pyvista image of values [z, y, x]."""
+    """Return a pyvista image of values [z, y, x]."""
     image = pyvista.ImageData(dimensions=values.shape[::-1], **geometry)
     image["field"] = values.ravel()
     return image

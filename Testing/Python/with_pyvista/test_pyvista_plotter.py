@@ -13,7 +13,7 @@ pyvista = pytest.importorskip("pyvista")
 
 
 def test_slider_moves_the_isovalue(plotter, ball):
-    """A volume is compressed once, and its blocks' ranges are found once."""
+    """The volume is compressed once, and its blocks' ranges are found once."""
     image = ball.progiso.decompress()
     prop = plotter.progiso.add_isosurface_slider(
         image, rng=(4, 16), title="radius", color="lime", lighting=False
@@ -34,7 +34,7 @@ def test_slider_moves_the_isovalue(plotter, ball):
 
 
 def test_clip(plotter, ball):
-    """As pyvista's clip: what the normal points to goes away."""
+    """As in pyvista's clip, what the normal points to goes away."""
     prop = plotter.progiso.add_isosurface(ball, 10, color="white", lighting=False)
     plotter.view_xz()
     whole = picture(plotter)[..., 0] > 128
@@ -82,7 +82,7 @@ def test_subplots_and_linked_views(ball):
 
 
 def test_surface_at(plotter, ball):
-    """Hits lie on the sphere, nowhere else; nothing is hit beside it."""
+    """Hits lie on the sphere; nothing is hit beside it."""
     prop = plotter.progiso.add_isosurface(ball, [12, 6], color="white", opacity=[0, 1])
     plotter.show(auto_close=False)
     for x, y in ((120, 120), (135, 110), (101, 128)):

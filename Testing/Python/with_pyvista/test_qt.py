@@ -1,6 +1,6 @@
 """In pyvistaqt's widget the image refines by Qt's event loop.
 
-(VTK's own widget for C++: Testing/Cxx/Qt.)
+VTK's own widget for C++ is tested in Testing/Cxx/Qt.
 """
 
 import importlib.util

@@ -1,5 +1,5 @@
-"""Another array gives the surface its colours, through its own colour map; the isosurface array
-gives one colour again."""
+"""Another array colours the surface through its own map; the isosurface array gives one colour
+again."""
 
 import session
 from paraview import simple

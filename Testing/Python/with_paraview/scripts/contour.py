@@ -1,5 +1,4 @@
-"""ZFP Contour in a pipeline: the surface that ParaView's Contour makes of the decoded image, shown
-the same."""
+"""ZFP Contour in a pipeline shows the surface that Contour makes of the decoded image."""
 
 import session
 from paraview import simple
@@ -11,7 +10,7 @@ values = [120.0, 180.0]
 
 
 def show_surface(source, name):
-    """Pixels of a surface, shown alone, and how many points and triangles it has."""
+    """Return a surface's pixels, shown alone, and its numbers of points and triangles."""
     simple.Show(source, view)
     session.look(view)
     pixels = session.screenshot(view, name)

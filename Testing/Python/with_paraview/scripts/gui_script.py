@@ -1,6 +1,8 @@
-"""Runs inside ParaView's own window (see gui.sh): shows a compressed volume as progressive
-isosurface, as a user would, and reports how the image refined while the window stayed responsive,
-and what the panel said meanwhile. Writes gui.json when it has converged."""
+"""Runs inside ParaView's own window (see gui.sh) and shows an isosurface as a user would.
+
+Reports how the image refined while the window stayed responsive, and what the panel said meanwhile.
+Writes gui.json when the image is complete.
+"""
 
 import json
 import os
@@ -35,7 +37,7 @@ seen = []  # after each image: the representation's figures, and what the panel 
 
 
 def panel():
-    """The widget that shows the statistics, and those in it by name."""
+    """Return the widget that shows the statistics, and those in it by name."""
     (bar,) = window.findChildren(QtWidgets.QProgressBar, "Completed")
     widget = bar.parentWidget()
     return widget, {
@@ -67,7 +69,7 @@ def figure(name):
 
 
 def look_at_progress(*_):
-    """After each image of the window: how far is it, and what does the panel say?"""
+    """After each image note how far it is, and what the panel says."""
     _, shows = panel()
     seen.append(
         {

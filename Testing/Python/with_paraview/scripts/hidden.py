@@ -1,5 +1,4 @@
-"""Holes: NaN where it is to be hidden, and blanked points, plain and compressed; an error where NaN
-is not."""
+"""Holes where points are blanked, or NaN is to be hidden; an error where it is not."""
 
 import session
 from paraview import simple
@@ -27,7 +26,7 @@ blanked = simple.ProgrammableFilter(Input=wavelet, Script=HOLE + MARK)
 
 
 def shoot(source, name, **properties):
-    """A picture of a source alone."""
+    """Return a picture of a source alone."""
     display = session.show_isosurface(
         source,
         view,

@@ -1,5 +1,4 @@
-"""Interactive renders show what is there and never lose it: refinement ends at the image that a
-still render makes at once."""
+"""Interactive renders refine the image, never lose any of it, and end at that of a still render."""
 
 import session
 

@@ -1,5 +1,4 @@
-"""The isosurface among other geometry: it hides and is hidden by depth, and translucent geometry
-blends over it."""
+"""The isosurface among other geometry: both hide by depth, translucent geometry blends over it."""
 
 import session
 from paraview import simple
@@ -13,6 +12,7 @@ surface = abs(alone - alone[0, 0]).max(axis=2) > 8
 
 
 def sphere(z, radius, color, opacity):
+    """Show a sphere; return its source."""
     source = simple.Sphere(Center=[0, 0, z], Radius=radius, ThetaResolution=48, PhiResolution=48)
     shown = simple.Show(source, view)
     shown.SetRepresentationType("Surface")
@@ -22,7 +22,7 @@ def sphere(z, radius, color, opacity):
 
 
 def shows(pixels, channel):
-    """Where one colour channel is far above the others."""
+    """Mark where one colour channel is far above the others."""
     others = [other for other in range(3) if other != channel]
     return pixels[:, :, channel] > 60 + pixels[:, :, others].max(axis=2)
 

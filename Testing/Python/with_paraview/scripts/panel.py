@@ -1,5 +1,7 @@
-"""What the panel offers arrives where it is drawn: isovalues, opacity, colour map, light, memory;
-in several views, undone and done again."""
+"""What the panel offers arrives where it is drawn.
+
+That is isovalues, opacity, colour map, light and memory, in several views, undone and done again.
+"""
 
 import session
 from paraview import servermanager, simple
@@ -18,7 +20,10 @@ first = session.screenshot(view, "panel.png")
 
 
 def drawn_property(of=view):
-    """The volume property that the mapper reads, whose only owner is the representation's prop."""
+    """Return the volume property that the mapper reads.
+
+    Its only owner is the representation's prop.
+    """
     (prop,) = (
         p for p in of.GetRenderer().GetViewProps() if p.IsA("vtkPVLODVolume") and p.GetVisibility()
     )
@@ -26,6 +31,7 @@ def drawn_property(of=view):
 
 
 def isovalues(of=view):
+    """Return the isovalues that a view draws."""
     values = drawn_property(of).GetIsoSurfaceValues()
     return [values.GetValue(i) for i in range(values.GetNumberOfContours())]
 

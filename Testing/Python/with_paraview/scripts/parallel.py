@@ -1,7 +1,4 @@
-"""Run by pvbatch on several processes: the same pictures whatever their number.
-
-Every process has a piece of the image, and draws that.
-"""
+"""The same pictures on any number of processes, each of which draws its piece (in pvbatch)."""
 
 import math
 
@@ -22,6 +19,7 @@ look = {"Isovalues": [150.0], "DiffuseColor": [0.9, 0.85, 0.7]}
 
 
 def shoot(source, name, **properties):
+    """Save a picture of a source alone; return its display."""
     display = session.show_isosurface(source, view, **{**look, **properties})
     session.screenshot(view, f"{name}.png")
     simple.Hide(source, view)

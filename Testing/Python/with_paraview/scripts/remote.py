@@ -1,5 +1,4 @@
-"""A client and a server of two processes: the server renders, the client shows the picture and the
-figures of all that draw."""
+"""A server of two processes renders; the client shows the picture, and the figures of both."""
 
 import os
 import socket
@@ -14,7 +13,8 @@ LOOK = {"Isovalues": [150.0], "DiffuseColor": [0.9, 0.85, 0.7]}
 
 
 def show_wavelet(name):
-    """The same scene wherever it is rendered: its picture, its figures, and what shows it."""
+    """Show the same scene wherever it is rendered; return its picture, its figures, and what shows
+    it."""
     view = session.make_view()
     wavelet = session.make_wavelet(60)
     display = session.show_isosurface(wavelet, view, **LOOK)
@@ -31,7 +31,7 @@ def free_port():
 def start_server(port):
     """Start the server's processes.
 
-    MPI has this script for one that it started, which they must not inherit.
+    They must not inherit MPI's variables, which say that MPI started this script.
     """
     environment = {
         k: v

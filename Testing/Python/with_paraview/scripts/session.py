@@ -40,8 +40,7 @@ def load_plugin(remote=False):
 
 
 def make_view(size=SIZE):
-    """Return a view of fixed size, plain in background, undecorated, neighbouring pixels not
-    blended."""
+    """Return a view of fixed size and plain background, undecorated, pixels not blended."""
     return undecorate(simple.CreateView("RenderView"), size)
 
 

@@ -1,5 +1,4 @@
-"""The representation in several states: their pictures are held against baselines by
-test_paraview.py.
+"""The representation in several states, for test_paraview.py.
 
 OUTPUT has a compressed volume, volume.vti.
 """

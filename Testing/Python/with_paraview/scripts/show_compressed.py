@@ -1,5 +1,4 @@
-"""A compressed volume, which has no arrays, as progressive isosurface; and the filters that make
-and undo it."""
+"""A compressed volume, which has no arrays, as isosurface, and the filters of compression."""
 
 import session
 from paraview import servermanager, simple

@@ -1,5 +1,4 @@
-"""A plain image as progressive isosurface: default isovalue, colours, statistics, speculation, and
-no restart without need."""
+"""A plain image as isosurface: default isovalue, colours, statistics, no restart without need."""
 
 import session
 from paraview import simple

@@ -1,4 +1,4 @@
-"""Load the state of state_save.py in a new process and compare."""
+"""Load the state of state_save.py in a new process and compare the pictures."""
 
 import session
 from paraview import simple

@@ -1,5 +1,4 @@
-"""Save a state with an isosurface of a plain image and of a compressed volume, and what it looks
-like."""
+"""Save a state with isosurfaces of a plain image and a compressed volume, and their picture."""
 
 import session
 from paraview import simple

@@ -1,5 +1,5 @@
-"""What the window's trace recorder writes down of a session makes the same picture when it is
-played back, as a saved state in Python does."""
+"""A recorded trace of a session makes the same picture when it is played; so does a state in
+Python."""
 
 import session
 from paraview import simple, smstate, smtrace
@@ -8,7 +8,7 @@ session.load_plugin()
 
 
 class Recorded:
-    """Property changes of a proxy as the panel's Apply records them."""
+    """Record changes of a proxy's properties as the panel's Apply does."""
 
     def __init__(self, proxy):
         self.proxy = proxy

@@ -1,4 +1,4 @@
-"""zfp's own files and VTI files of compressed volumes through ParaView's readers and writers."""
+"""zfp's own files and VTI files of compressed volumes pass ParaView's readers and writers."""
 
 import session
 from paraview import simple
