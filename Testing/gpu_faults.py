@@ -59,7 +59,7 @@ def hold_by_torch():
 
 
 def hold_by_textures(window, most):
-    """Fill the memory with textures of a GiB, as long as they can be made, but for `most` at most."""
+    """Fill the memory with textures of a GiB, `most` at most, as long as they can be made."""
     textures = []
     while len(textures) < most:
         texture = vtkTextureObject()

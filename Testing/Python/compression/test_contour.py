@@ -37,7 +37,7 @@ def open_edges(surface):
 @pytest.mark.parametrize("name", SCANS)
 def test_scans(name):
     """All isovalues that a scan's catalogue entry proposes, at once."""
-    volume = progiso.compress(progiso.read(fetch(name)), 8)
+    volume = progiso.compress(progiso.read(fetch(name)), rate=8)
     surface = check_against_vtk(volume, list(SCANS[name].isovalues.values()))
     assert surface.GetNumberOfPolys() > 500_000
 
@@ -87,7 +87,7 @@ def test_cell_data_lie_in_the_centres():
     ours = contoured(progiso.compress(cells, rate=8), [0.1], 8)
     origin = np.array([9, 8, 7]) + 0.5 * np.array([0.5, 2, 1])
     centres = make_image(values, spacing=(0.5, 2, 1), origin=origin, extent_start=(5, -6, 7))
-    check_same_surface(ours, contoured(progiso.compress(centres, 8), [0.1], 8))
+    check_same_surface(ours, contoured(progiso.compress(centres, rate=8), [0.1], 8))
 
 
 def test_closed_where_the_volume_is():
@@ -133,7 +133,7 @@ def test_values_as_in_vtks_filters():
 def test_values_survive_the_round_trip():
     """The surface lies where the decoded samples say: every point's interpolated value is the
     isovalue."""
-    volume = progiso.compress(make_image(blobs((24, 25, 26), 7)), 6)
+    volume = progiso.compress(make_image(blobs((24, 25, 26), 7)), rate=6)
     values = samples_of(progiso.decompress(volume))
     points = vtk_to_numpy(contoured(volume, [0.2], 8).GetPoints().GetData()).astype(float)
     low = np.floor(points).astype(int)
@@ -156,7 +156,7 @@ def test_plain_images_are_vtks():
         contour_by(vtkFlyingEdges3D(), image, [0.4, 0.6]),
     )
     ours = progiso.contour(image, 0.4, rate=8, gradients=True)
-    check_same_surface(ours, contoured(progiso.compress(image, 8), [0.4]))
+    check_same_surface(ours, contoured(progiso.compress(image, rate=8), [0.4]))
 
 
 @pytest.mark.parametrize("cells", [False, True])
@@ -196,4 +196,4 @@ def test_errors_name_what_is_wrong():
         ([1, 2], 0, {}, TypeError, "vtkImageData"),
     ):
         with pytest.raises(kind, match=words):
-            progiso.contour(*arguments)
+            progiso.contour(volume, isovalues, **options)

@@ -14,8 +14,8 @@ from helpers.surfaces import corners_of
 def test_command_line(tmp_path):
     image = make_image(blobs((20, 22, 24)), spacing=(1, 2, 3))
     progiso.save(image, tmp_path / "plain.vti")
-    progiso.save(progiso.compress(image, 6), tmp_path / "packed.vti")
-    expected = progiso.contour(progiso.compress(image, 6), [0.1, 0.3])
+    progiso.save(progiso.compress(image, rate=6), tmp_path / "packed.vti")
+    expected = progiso.contour(progiso.compress(image, rate=6), [0.1, 0.3])
     for arguments in (["packed.vti"], ["plain.vti", "--rate", 6]):
         name, *rest = arguments
         done = run_progiso(

@@ -42,7 +42,7 @@ def in_order(triangles):
 
 def test_gradients_at_the_border_of_a_hole():
     z, y, x = np.meshgrid(*[np.arange(n, dtype=np.float32) for n in SHAPE], indexing="ij")
-    image = progiso.compress(blank(make_image(z + 0.4 * y + 0.3 * x), speckles(SHAPE)), 32)
+    image = progiso.compress(blank(make_image(z + 0.4 * y + 0.3 * x), speckles(SHAPE)), rate=32)
     surface = progiso.contour(image, 20.3, gradients=True)
     gradients = vtk_to_numpy(surface.GetPointData().GetArray("Gradients"))
     assert len(gradients) > 100

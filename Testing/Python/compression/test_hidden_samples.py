@@ -49,7 +49,7 @@ def test_round_trip(shape, start, share, rate, cells, seed):
         np.where(samples, np.nan, noise(shape, seed)), cells=cells, extent_start=start
     )
     others = None if cells else speckles(fewer(shape), share, seed + 1)
-    volume = progiso.compress(blank(image, cells=others), rate, mask_nan=True)
+    volume = progiso.compress(blank(image, cells=others), rate=rate, mask_nan=True)
     back = progiso.decompress(volume)
     values = samples_of(back)
     assert np.array_equal(np.isnan(values), samples)
@@ -62,7 +62,7 @@ def test_round_trip(shape, start, share, rate, cells, seed):
     )
     if not cells:
         check_flags(back.GetCellData(), others, HIDDEN_CELL)
-    again = progiso.compress(back, rate)
+    again = progiso.compress(back, rate=rate)
     for name in ("HiddenSamples", "HiddenCells"):
         runs = [v.GetFieldData().GetArray("ProgIso.ZFP." + name) for v in (volume, again)]
         assert (runs[0] is None) == (runs[1] is None)
@@ -89,25 +89,25 @@ def test_hidden_values_cost_nothing():
     errors = []
     for filling in (np.nan, 1e30, 0):
         image = blank(make_image(np.where(hidden, np.float32(filling), values)), hidden)
-        volume = progiso.compress(image, 6)
+        volume = progiso.compress(image, rate=6)
         errors.append(np.abs(samples_of(progiso.decompress(volume)) - values)[~hidden].max())
         assert progiso.describe(volume)["range"] == [values[~hidden].min(), values[~hidden].max()]
-    whole = samples_of(progiso.decompress(progiso.compress(make_image(values), 6)))
+    whole = samples_of(progiso.decompress(progiso.compress(make_image(values), rate=6)))
     assert errors[0] == errors[1] == errors[2] <= 3 * np.abs(whole - values).max()
 
 
 def test_slabs_and_files_hide_alike(tmp_path):
     hidden = ball(SHAPE, 9)
     values = np.where(hidden, np.float32(np.inf), blobs(SHAPE, 3))
-    whole = progiso.compress(make_image(values), 5, mask_nan=True)
+    whole = progiso.compress(make_image(values), rate=5, mask_nan=True)
     values.tofile(tmp_path / f"hole_{SHAPE[2]}x{SHAPE[1]}x{SHAPE[0]}_float32.raw")
-    slabs = progiso.compress_slabs(iter(values), SHAPE[::-1], 5, mask_nan=True)
-    file = progiso.compress_file(next(tmp_path.iterdir()), 5, mask_nan=True)
+    slabs = progiso.compress_slabs(iter(values), SHAPE[::-1], rate=5, mask_nan=True)
+    file = progiso.compress_file(next(tmp_path.iterdir()), rate=5, mask_nan=True)
     for volume in (slabs, file):
         assert stream_of(volume) == stream_of(whole)
         assert np.array_equal(metadata(volume, "HiddenSamples"), metadata(whole, "HiddenSamples"))
     with pytest.raises(RuntimeError, match="infinite"):
-        progiso.compress_slabs(iter(values), SHAPE[::-1], 5)
+        progiso.compress_slabs(iter(values), SHAPE[::-1], rate=5)
 
 
 def test_a_piece_takes_its_part_of_the_mask():

@@ -48,7 +48,7 @@ def test_pieces_hold_the_blocks_of_the_whole(pieces, cells):
 def test_cropping_keeps_blocks_as_they_are(bits):
     """Rows of blocks may begin at any bit of a word."""
     compressed = progiso.compress(
-        make_image(noise((21, 18, 30), 5), extent_start=(3, -4, 5)), bits / 64
+        make_image(noise((21, 18, 30), 5), extent_start=(3, -4, 5)), rate=bits / 64
     )
     part, volume = vtkImageData(), vtkCompressedVolume()
     part.DeepCopy(compressed)
@@ -68,7 +68,7 @@ def test_cropping_keeps_blocks_as_they_are(bits):
 
 
 def test_a_stream_of_another_piece_is_refused():
-    compressed = progiso.compress(make_image(noise((9, 9, 9))), 8)
+    compressed = progiso.compress(make_image(noise((9, 9, 9))), rate=8)
     compressed.SetExtent(4, 12, 0, 8, 0, 4)
     reader = vtkCompressedVolume()
     assert not reader.Read(compressed) and "another piece" in reader.GetErrorMessage()

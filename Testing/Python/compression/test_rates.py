@@ -14,7 +14,7 @@ from progiso import rates
 
 def error_at(values, rate, **choice):
     """Return the largest error of a visible sample at a rate, by libzfp."""
-    image = progiso.compress(make_image(values), rate, **choice)
+    image = progiso.compress(make_image(values), rate=rate, **choice)
     about = progiso.describe(image)
     decoded = about["offset"] + about["scale"] * reference_values(image).astype(float)
     with np.errstate(invalid="ignore"):

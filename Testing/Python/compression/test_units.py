@@ -31,7 +31,7 @@ def plain():
 @pytest.fixture(scope="module")
 def shifted():
     """Add a value so large that float32 would leave nothing of the field."""
-    image = progiso.compress(make_image(OFFSET + SCALE * FIELD), 32)
+    image = progiso.compress(make_image(OFFSET + SCALE * FIELD), rate=32)
     assert progiso.describe(image)["offset"] != 0
     return image
 

@@ -25,7 +25,7 @@ def test_vti_carries_the_stream_through_pyvista(tmp_path):
     """pyvista saves and reads a compressed volume untouched."""
     pyvista = pytest.importorskip("pyvista")
     compressed = progiso.compress(
-        make_image(noise((7, 8, 9)), origin=(1, 2, 3), extent_start=(5, 6, 7)), 3
+        make_image(noise((7, 8, 9)), origin=(1, 2, 3), extent_start=(5, 6, 7)), rate=3
     )
     pyvista.wrap(compressed).save(tmp_path / "volume.vti")
     read = pyvista.read(tmp_path / "volume.vti")
@@ -40,7 +40,7 @@ def test_writer_against_the_tool(tmp_path, header, rate, lacking):
     if not zfp_reference.has_tool():
         lacking("the zfp command line tool is not installed (Debian: zfp)")
     values = noise((6, 9, 7), 6)
-    compressed = progiso.compress(make_image(values), rate)
+    compressed = progiso.compress(make_image(values), rate=rate)
     path = tmp_path / "volume.zfp"
     writer = vtkZFPWriter()
     writer.SetInputData(compressed)
@@ -102,22 +102,22 @@ def test_reader_against_the_tool(tmp_path, header, rate, lacking):
 @pytest.mark.parametrize("rate", [9 / 64, 7.3, 32])
 def test_reader_puts_parts_together(tmp_path, header, rate):
     """Files are read by several threads in parts of a quarter of a MiB."""
-    compressed = progiso.compress(make_image(noise((61, 62, 65), 8)), rate)
+    compressed = progiso.compress(make_image(noise((61, 62, 65), 8)), rate=rate)
     writer = vtkZFPWriter()
     writer.SetInputData(compressed)
     writer.SetFileName(str(tmp_path / "volume.zfp"))
     writer.SetWriteHeader(header)
     assert writer.Write() == 1
     dimensions = None if header else (65, 62, 61)
-    assert stream_of(progiso.read(tmp_path / "volume.zfp", dimensions, rate)) == stream_of(
-        compressed
-    )
+    assert stream_of(
+        progiso.read(tmp_path / "volume.zfp", dimensions=dimensions, rate=rate)
+    ) == stream_of(compressed)
 
 
 def test_vti_with_appended_data(tmp_path):
     """Raw bytes after the XML hold the same in less space."""
     compressed = progiso.compress(
-        make_image(noise((30, 31, 32)), origin=(1, 2, 3), extent_start=(5, 6, 7)), 8
+        make_image(noise((30, 31, 32)), origin=(1, 2, 3), extent_start=(5, 6, 7)), rate=8
     )
     progiso.save(compressed, tmp_path / "in_line.vti")
     progiso.save(compressed, tmp_path / "appended.vti", appended=True)

@@ -10,7 +10,7 @@ from helpers.images import blobs, make_image
 @pytest.fixture(scope="module")
 def image():
     """Return a volume of three different sizes."""
-    return progiso.compress(make_image(blobs(SHAPE, 12, waves=2)), 16)
+    return progiso.compress(make_image(blobs(SHAPE, 12, waves=2)), rate=16)
 
 
 @pytest.fixture(scope="module")
@@ -20,4 +20,4 @@ def cube():
     Where a light is in the scene VTK's mapper stretches normals by the ratios of the sizes, and
     reaches one part in so many too far for their differences.
     """
-    return progiso.compress(make_image(blobs((48, 48, 48), 12, waves=1)), 16)
+    return progiso.compress(make_image(blobs((48, 48, 48), 12, waves=1)), rate=16)

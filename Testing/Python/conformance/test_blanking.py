@@ -66,7 +66,7 @@ def test_blanking(kind):
     reference."""
     grid = blanked(kind)
     ours, theirs = ComparisonScene(ours=True), ComparisonScene(ours=False)
-    compressed = progiso.compress(grid, 24)
+    compressed = progiso.compress(grid, rate=24)
     show(ours, compressed)
     mapper, actor = vtkPolyDataMapper(), vtkActor()
     mapper.SetInputData(visible_triangles(grid))
@@ -81,7 +81,7 @@ def test_blanking(kind):
     whole = ComparisonScene(ours=True)
     show(
         whole,
-        progiso.compress(make_image(blobs(SHAPE, 12, waves=2), cells=kind == "cell data"), 24),
+        progiso.compress(make_image(blobs(SHAPE, 12, waves=2), cells=kind == "cell data"), rate=24),
     )
     assert far_apart(picture, whole.picture())[0] > 2 * tolerances.VTK_PIXELS, (
         "hardly anything that is seen is hidden"
@@ -91,9 +91,9 @@ def test_blanking(kind):
 def test_the_mapper_takes_a_uniform_grid_itself():
     grid = blanked("points")
     pictures = []
-    for image in (grid, progiso.compress(grid, 24)):
+    for image in (grid, progiso.compress(grid, rate=24)):
         scene = ComparisonScene(ours=True)
         scene.add(image, OPAQUE, Rate=24)
-        scene.look_at(progiso.compress(grid, 24))
+        scene.look_at(progiso.compress(grid, rate=24))
         pictures.append(scene.picture())
     assert np.array_equal(*pictures)

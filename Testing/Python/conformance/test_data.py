@@ -29,7 +29,7 @@ def test_cell_data(surfaces):
     VTK's mapper draws them up to the cells' outer faces, ours between the centres.
     """
     compressed = progiso.compress(
-        make_image(blobs(SHAPE, 12, waves=2), cells=True, spacing=(1, 1.5, 1)), 16
+        make_image(blobs(SHAPE, 12, waves=2), cells=True, spacing=(1, 1.5, 1)), rate=16
     )
 
     def build(scene):
@@ -62,7 +62,7 @@ def test_cell_data(surfaces):
 )
 def test_data_types(kind):
     values = (60 + 50 * np.clip(blobs(SHAPE, 12, waves=2), -1, 1)).astype(kind)
-    compressed = progiso.compress(make_image(values), 16)
+    compressed = progiso.compress(make_image(values), rate=16)
     check_scene_like_vtk(lambda scene: show(scene, compressed, {65: (*GREEN, 1.0)}))
 
 
@@ -71,14 +71,14 @@ def several(scene, arrays, component=None):
     plain = make_image(next(iter(arrays.values())), name=next(iter(arrays)))
     for name, values in arrays.items():
         plain.GetPointData().AddArray(make_image(values, name=name).GetPointData().GetScalars())
-    volume = scene.add(progiso.compress(make_image(blobs(SHAPE, 1)), 4), OPAQUE)
+    volume = scene.add(progiso.compress(make_image(blobs(SHAPE, 1)), rate=4), OPAQUE)
     volume.GetMapper().SetInputData(plain)
     scene.look_at(plain_geometry())
     return volume
 
 
 def plain_geometry():
-    return progiso.compress(make_image(np.zeros(SHAPE, np.float32)), 4)
+    return progiso.compress(make_image(np.zeros(SHAPE, np.float32)), rate=4)
 
 
 def test_changed_array():
@@ -134,7 +134,9 @@ def several_of_vtk(values):
 
 def test_time_series():
     """Another image at the input is drawn, and another time of the same image object."""
-    steps = [progiso.compress(make_image(blobs(SHAPE, seed, waves=2)), 16) for seed in (12, 5, 12)]
+    steps = [
+        progiso.compress(make_image(blobs(SHAPE, seed, waves=2)), rate=16) for seed in (12, 5, 12)
+    ]
     scenes = both(lambda scene: show(scene, steps[0]))
     pictures = []
     for step in steps:

@@ -66,7 +66,7 @@ def test_a_narrow_colour_is_not_smeared():
     scene = ComparisonScene(ours=True)
     show(
         scene,
-        progiso.compress(make_image(values), 24),
+        progiso.compress(make_image(values), rate=24),
         {999.0: (*RED, 1.0), 1000.0: (*GREEN, 1.0), 1001.0: (*BLUE, 1.0)},
     )
     picture = scene.picture()[np.isfinite(progiso.depth(scene.mapper))]

@@ -55,7 +55,7 @@ def test_oriented_image(spacing):
         direction=direction,
         extent_start=(2, -7, 4),
     )
-    compressed = progiso.compress(values, 16)
+    compressed = progiso.compress(values, rate=16)
     check_scene_like_vtk(lambda scene: show(scene, compressed, NESTED))
 
 
@@ -81,7 +81,7 @@ def test_from_perspective_to_parallel(image):
 )
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
 def test_camera_inside(spacing, matrix, angle, surfaces):
-    compressed = progiso.compress(make_image(blobs(SHAPE, 12, waves=2), spacing=spacing), 16)
+    compressed = progiso.compress(make_image(blobs(SHAPE, 12, waves=2), spacing=spacing), rate=16)
     place = np.append(CENTRE * spacing, 1)
     moved = np.eye(4) if matrix is None else matrix
     eye, focus = (moved @ (place + [*np.array(d) * spacing, 0]) for d in ((2, 3, 1), (9, 6, -4)))

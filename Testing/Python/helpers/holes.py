@@ -60,25 +60,27 @@ def nan_image(hidden, values):
 #: surface.
 def hidden_points():
     hidden = ball(SHAPE, 12)
-    return progiso.compress(blank(make_image(blobs(SHAPE, 3)), points=hidden), 12), cells_of(hidden)
+    return progiso.compress(blank(make_image(blobs(SHAPE, 3)), points=hidden), rate=12), cells_of(
+        hidden
+    )
 
 
 def hidden_cells():
     hidden = ball(fewer(SHAPE), 12)
-    return progiso.compress(blank(make_image(blobs(SHAPE, 3)), cells=hidden), 12), hidden
+    return progiso.compress(blank(make_image(blobs(SHAPE, 3)), cells=hidden), rate=12), hidden
 
 
 def refined_cells():
     hidden = ball(fewer(SHAPE), 12, 0.2)
     return progiso.compress(
-        blank(make_image(blobs(SHAPE, 3)), cells=hidden, flag=REFINED_CELL), 12
+        blank(make_image(blobs(SHAPE, 3)), cells=hidden, flag=REFINED_CELL), rate=12
     ), hidden
 
 
 def hidden_cells_of_cell_data():
     hidden = speckles(SHAPE, 0.03)
     return progiso.compress(
-        blank(make_image(blobs(SHAPE, 3), cells=True), cells=hidden), 12
+        blank(make_image(blobs(SHAPE, 3), cells=True), cells=hidden), rate=12
     ), cells_of(hidden)
 
 
@@ -86,19 +88,21 @@ def hidden_points_of_cell_data():
     points = ball([n + 1 for n in SHAPE], 11, 0.4)
     hidden = cells_of(points)
     return progiso.compress(
-        blank(make_image(blobs(SHAPE, 3), cells=True), points=points), 12
+        blank(make_image(blobs(SHAPE, 3), cells=True), points=points), rate=12
     ), cells_of(hidden)
 
 
 def nan_samples():
     hidden = speckles(SHAPE, 0.02) | ball(SHAPE, 7, 0.8)
-    return progiso.compress(nan_image(hidden, blobs(SHAPE, 3)), 12, mask_nan=True), cells_of(hidden)
+    return progiso.compress(nan_image(hidden, blobs(SHAPE, 3)), rate=12, mask_nan=True), cells_of(
+        hidden
+    )
 
 
 def all_together():
     points, cells, nan = speckles(SHAPE, 0.01), ball(fewer(SHAPE), 6), ball(SHAPE, 5, 0.1)
     image = blank(nan_image(nan, blobs(SHAPE, 3)), points, cells)
-    return progiso.compress(image, 12, mask_nan=True), cells_of(points | nan) | cells
+    return progiso.compress(image, rate=12, mask_nan=True), cells_of(points | nan) | cells
 
 
 KINDS = [

@@ -38,7 +38,7 @@ def imported_folders(module):
 
 @pytest.mark.parametrize("folder", MAY_IMPORT)
 def test_folders_import_one_way(folder):
-    """No import loop between folders, and benchmarks and verification know nothing of each other."""
+    """There is no import loop; benchmarks and verification know nothing of each other."""
     modules = [module for module in MODULES if module.parts[0] == folder]
     assert modules
     for module in modules:

@@ -168,7 +168,7 @@ def test_what_hiding_takes():
 
 def test_all_of_it_hidden():
     """A volume that is hidden as a whole shows nothing, and is no error."""
-    image = progiso.compress(make_image(np.full(SHAPE, np.nan, np.float32)), 8, mask_nan=True)
+    image = progiso.compress(make_image(np.full(SHAPE, np.nan, np.float32)), rate=8, mask_nan=True)
     assert progiso.describe(image)["range"] == [0, 0]
     assert not np.isfinite(Scene(image, 0, Camera((14, 14, 90), (14, 14, 12)), SIZE).depth()).any()
     assert np.isnan(samples_of(progiso.decompress(image))).all()

@@ -42,7 +42,9 @@ def colours(prop, *radii):
 
 
 def test_each_isovalue_has_its_colour_and_opacity(image):
-    prop = progiso.make_isosurface(image, [12, 6], [RED, GREEN], shade=False, opacity=[0.25, 1])
+    prop = progiso.make_isosurface(
+        image, [12, 6], color=[RED, GREEN], shade=False, opacity=[0.25, 1]
+    )
     # from outside in: beside both, through the outer sphere's front and back, on the inner through
     # the outer
     through = 0.25 + 0.75 * 0.25
@@ -61,7 +63,9 @@ def test_a_hidden_isovalue(image):
 
 def test_a_changed_isovalue_keeps_colour_and_opacity(image):
     """It keeps them where it passes another isovalue, and where both are equal on the way."""
-    prop = progiso.make_isosurface(image, [12, 6], [RED, GREEN], shade=False, opacity=[0.25, 1])
+    prop = progiso.make_isosurface(
+        image, [12, 6], color=[RED, GREEN], shade=False, opacity=[0.25, 1]
+    )
     values = prop.GetProperty().GetIsoSurfaceValues()
     values.SetValue(1, 12)
     values.SetValue(1, 15)
@@ -121,7 +125,9 @@ def test_errors_name_what_is_wrong(image, case):
 
 def test_windows_come_and_go(image):
     """A prop goes on in another window, where its blocks are decoded again."""
-    prop = progiso.make_isosurface(image, [12, 6], [RED, GREEN], shade=False, opacity=[0.25, 1])
+    prop = progiso.make_isosurface(
+        image, [12, 6], color=[RED, GREEN], shade=False, opacity=[0.25, 1]
+    )
     prop.GetMapper().SetDecodeWholeVolume(False)
     through = 0.25 + 0.75 * 0.25
     for _ in range(3):
@@ -130,7 +136,7 @@ def test_windows_come_and_go(image):
 
 def test_render(image):
     """Colours are given as on the command line, by name: one, or one for each isovalue."""
-    camera = progiso.view_camera(image, (1, 0, 0), (0, 0, 1))
+    camera = progiso.view_camera(image, direction=(1, 0, 0), view_up=(0, 0, 1))
     one, both = (
         progiso.render(
             image,

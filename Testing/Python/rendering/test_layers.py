@@ -136,7 +136,7 @@ def least_budget(image, surfaces, lit):
 def whole(request):
     """Return a volume larger than the smallest cache and buffer, whether it is lit, and picture and
     depth of one pass."""
-    image = progiso.compress(make_image(blobs((60, 64, 56), 3, waves=5)), 32)
+    image = progiso.compress(make_image(blobs((60, 64, 56), 3, waves=5)), rate=32)
     scene = ComparisonScene(ours=True)
     show(scene, image, NESTED).GetProperty().SetShade(request.param)
     scene.renderer.AddActor(ball(20, centre=image.GetCenter()))

@@ -120,7 +120,7 @@ def test_memory_adds_up(scene):
 @pytest.mark.parametrize("shape", [(17, 18, 19), (100, 90, 110)])
 def test_memory_formula(shape, size, settings):
     """Beside stream and cache there are three bytes a block and forty a pixel."""
-    image = progiso.compress(make_image(noise(shape)), 1)
+    image = progiso.compress(make_image(noise(shape)), rate=1)
     scene = Scene(image, 0.5, orbit(reference_volume(image), 1, 4), size, **settings)
     scene.render()
     check_memory(image, scene.statistics())

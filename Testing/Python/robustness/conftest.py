@@ -11,7 +11,7 @@ MODES = {"whole": {}, "cached": CACHED}
 
 @pytest.fixture(scope="module")
 def image():
-    return progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), 8)
+    return progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), rate=8)
 
 
 @pytest.fixture(params=MODES)

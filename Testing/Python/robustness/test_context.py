@@ -51,7 +51,7 @@ from helpers.images import blobs, make_image
 from helpers.comparison import NESTED, OPAQUE, show
 import progiso
 
-image = progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), 8)
+image = progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), rate=8)
 pictures = []
 for surfaces, settings in ((OPAQUE, {{}}), (NESTED, CACHED), (OPAQUE, CACHED)):
     scene = ComparisonScene(ours=True)
@@ -73,7 +73,7 @@ from helpers.comparison import OPAQUE, show
 import progiso
 
 scene = ComparisonScene(ours=True)
-show(scene, progiso.compress(make_image(blobs((16, 16, 16), 12)), 8), OPAQUE)
+show(scene, progiso.compress(make_image(blobs((16, 16, 16), 12)), rate=8), OPAQUE)
 for _ in range(2):
     with vtk_messages() as messages:
         scene.window.Render()

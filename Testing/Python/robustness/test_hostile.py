@@ -72,7 +72,7 @@ def window():
 def damaged(request):
     """Return a compressed volume with a damaged stream, and an isovalue in the middle of what
     libzfp decodes of it."""
-    image = progiso.compress(make_image(blobs(SHAPE, 3)), 8)
+    image = progiso.compress(make_image(blobs(SHAPE, 3)), rate=8)
     stream = vtk_to_numpy(image.GetFieldData().GetAbstractArray(PREFIX + "Stream"))
     DAMAGE[request.param](
         stream, np.random.default_rng(5)
@@ -150,7 +150,7 @@ def infinite_block(sign):
 @pytest.mark.parametrize("sign", [-1, 1])
 def test_infinite_values_hide_no_other_surface(sign):
     """Other blocks of a macrocell with infinite values are shown as before."""
-    image = progiso.compress(make_image(blobs((16, 16, 16), 5)), 32)
+    image = progiso.compress(make_image(blobs((16, 16, 16), 5)), rate=32)
     camera = Camera((40.0, 45.0, 50.0), (7.5, 7.5, 7.5), view_angle=25.0)
     before = Scene(image, 0.1, camera, SIZE).depth()
     metadata(image, "Stream")[:256] = infinite_block(sign)
@@ -165,7 +165,7 @@ def test_infinite_values_hide_no_other_surface(sign):
 @pytest.mark.parametrize("low, high", [(0, 1e-30), (-1e30, 1e30), (7, 8), (-1e300, 1e300)])
 def test_lying_range(low, high):
     """The range of values is for users; nothing is left out by it."""
-    image = progiso.compress(make_image(noise((12, 12, 12))), 8)
+    image = progiso.compress(make_image(noise((12, 12, 12))), rate=8)
     expected = shows(image, [1.0], **CACHED)
     metadata(image, "Range")[:] = low, high
     assert shows(image, [1.0], **CACHED) == expected
@@ -190,7 +190,7 @@ GEOMETRIES = {
 @pytest.mark.parametrize("case", GEOMETRIES)
 def test_geometry(case):
     """Where rays would have no end there is one error and nothing is drawn."""
-    image = progiso.compress(make_image(noise((9, 9, 9))), 8)
+    image = progiso.compress(make_image(noise((9, 9, 9))), rate=8)
     scene = Scene(image, 1.0, CAMERA, SIZE, **CACHED)
     scene.renderer.GetActiveCamera().SetClippingRange(0.1, 500)
     scene.window.Render()

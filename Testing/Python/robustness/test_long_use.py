@@ -73,7 +73,7 @@ def test_mappers_come_and_go(image):
 
 def test_fifty_volumes(image):
     """In rows of one scene, each shows as it does alone, and they share their shaders."""
-    size, small = (300, 160), progiso.compress(make_image(blobs((12, 14, 10), 5, waves=1)), 16)
+    size, small = (300, 160), progiso.compress(make_image(blobs((12, 14, 10), 5, waves=1)), rate=16)
     scene, alone = ComparisonScene(ours=True, size=size), ComparisonScene(ours=True, size=size)
     places = [np.array((12 * (i % 10), 16 * (i // 10), 0)) for i in range(VOLUMES)]
     matrices = [np.block([[np.eye(3), place[:, None]], [np.zeros(3), 1]]) for place in places]
@@ -157,7 +157,7 @@ from helpers.images import blobs, make_image
 from helpers.comparison import NESTED, OPAQUE, show
 from helpers.gl_objects import objects
 
-image = progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), 8)
+image = progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), rate=8)
 scenes = [ComparisonScene(ours=True), ComparisonScene(ours=True)]
 scenes[1].window.SetSharedRenderWindow(scenes[0].window)
 for scene, surfaces in zip(scenes, (OPAQUE, NESTED)):

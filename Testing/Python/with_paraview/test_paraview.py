@@ -26,7 +26,7 @@ def shown(request, build, packages, tmp_path_factory):
     import progiso
 
     folder = tmp_path_factory.mktemp(request.param)
-    progiso.save(progiso.compress(make_image(marschner_lobb(64)), 8), folder / "volume.vti")
+    progiso.save(progiso.compress(make_image(marschner_lobb(64)), rate=8), folder / "volume.vti")
     output = under_x(request.param, SCRIPTS / "show.py", build, folder, python_path=[packages])
     assert not any(word in output for word in WARNINGS), output[-6000:]
     (facts,) = [line for line in output.splitlines() if line.startswith("{")]

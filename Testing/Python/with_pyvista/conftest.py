@@ -11,7 +11,7 @@ def ball():
 
     image = pyvista.ImageData(dimensions=(33, 33, 33), origin=(-16, -16, -16))
     image["distance"] = np.linalg.norm(image.points, axis=1).astype(np.float32)
-    return image.progiso.compress(16)
+    return image.progiso.compress(rate=16)
 
 
 @pytest.fixture
