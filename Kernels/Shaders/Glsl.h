@@ -20,6 +20,7 @@ using ivec3 = std::int32_t[3];
 #define UNIFORM_BLOCK(name, number) struct name
 #define INSTANCE(name)
 #include "Shaders/Shared/SceneBlocks.glsl.h"
+#include "Shaders/Light/Palette.glsl.h"
 #undef UNIFORM_BLOCK
 #undef INSTANCE
 }

@@ -1,22 +1,23 @@
-// Eviction, first step: how much of the cache has not been used for how many passes?
+// First step of eviction: counts how much of the cache has not been used for how many passes.
 // In: CacheMap. Out: Control (Ages).
 
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
+#include "Cache/PageAges.glsl"
 
-shared uint groupAges[256];
+shared uint groupAges[PASS_AGES];
 
 void main()
 {
-  uint lane = gl_LocalInvocationIndex;
+  uint lane = gl_LocalInvocationIndex; // the group has as many lanes as there are ages
   groupAges[lane] = 0u;
   barrier();
-  for (uint page = GROUP_SIZE * gl_WorkGroupID.x + lane; page < cache.MapPages; page += GROUP_SIZE * gl_NumWorkGroups.x)
+  uint first = GROUP_SIZE * gl_WorkGroupID.x + lane;
+  for (uint page = first; page < cache.MapPages; page += GROUP_SIZE * gl_NumWorkGroups.x)
   {
     if (mapPages[page].Cell != NONE)
     {
-      uint units = control.EvictByPages != 0u ? 1u : mapPages[page].Used;
-      atomicAdd(groupAges[min(control.PassSerial - 1u - mapPages[page].Stamp, 255u)], units);
+      atomicAdd(groupAges[AgeOf(page)], UnitsOf(page));
     }
   }
   barrier();

@@ -1,4 +1,4 @@
-// A new cache holds nothing.
+// Empties the cache.
 // Out: Macrocells, CacheMap, CacheFreeSlots, Control.
 
 #include "Shared/Scene.glsl"
@@ -23,9 +23,10 @@ void main()
     mapPages[i].Cell = NONE;
     mapPages[i].Free = i;
   }
-  for (uint i = first; i < 64u * cache.MapPages; i += stride)
+  const uint places = uint(BLOCKS_PER_MACROCELL);
+  for (uint i = first; i < places * cache.MapPages; i += stride)
   {
-    mapPages[i >> 6].Slots[i & 63u] = NONE;
+    mapPages[i / places].Slots[i % places] = NONE;
   }
   if (first == 0u)
   {

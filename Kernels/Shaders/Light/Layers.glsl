@@ -1,7 +1,8 @@
-// The layers of a translucent image, blended front to back.
+// The hits of a translucent image, blended front to back.
 
 #define OPAQUE_ENOUGH 0.998 // what lies behind changes no colour of 8 bits
 
+// The sum of what is blended so far: colour times opacity, and opacity.
 vec4 BlendedLayers(uint pixel)
 {
   uvec2 bits = layers[pixel];
@@ -9,7 +10,7 @@ vec4 BlendedLayers(uint pixel)
 }
 
 #ifdef WRITES_LAYERS
-// Adds what lies behind all that is there; false where nothing more would show.
+// Blends a hit behind all others; false if nothing behind it would show.
 bool AddLayer(uint pixel, vec3 color, float opacity)
 {
   vec4 before = BlendedLayers(pixel);

@@ -1,26 +1,19 @@
-// Light on a surface, by Phong's model, in view coordinates. Two-sided, a light reaches the surface from either side, as
-// VTK's volume mapper has it, or only the side that is seen, as VTK's meshes are lit; one-sided only from where the values
-// are lower.
+// Lights a surface by Phong's model, in view coordinates.
 
 #ifdef COLORED
-// Colours over a range of values: low, 1 / (high - low).
-layout(std140, binding = PALETTE_BINDING) uniform Palette
-{
-  vec4 Range;
-  vec4 Colors[PALETTE_SIZE];
-}
-palette;
+#include "Light/Palette.glsl.h"
 
-vec3 PaletteColor(float value)
+vec3 ColorOfValue(float value)
 {
-  float at = clamp((value - palette.Range.x) * palette.Range.y, 0.0, 1.0) * float(PALETTE_SIZE - 1);
+  float place = clamp((value - palette.Low) * palette.PerUnit, 0.0, 1.0);
+  float at = place * float(PALETTE_SIZE - 1);
   int below = min(int(at), PALETTE_SIZE - 2);
-  return mix(palette.Colors[below].rgb, palette.Colors[below + 1].rgb, at - float(below));
+  return mix(palette.Colors[below].Rgb, palette.Colors[below + 1].Rgb, at - float(below));
 }
 #endif
 
 #ifdef LIT
-// What of a light arrives, and from where.
+// The part of a light that arrives at a position, and the direction that it comes from.
 float Attenuation(Light light, vec3 position, out vec3 toLight)
 {
   if (light.IsPositional == 0)
@@ -42,11 +35,11 @@ float Attenuation(Light light, vec3 position, out vec3 toLight)
   return attenuation;
 }
 
-// The side of the surface that counts for a light.
-vec3 Facing(vec3 normal, vec3 toLight, vec3 toViewer)
+// The normal of the side that a light reaches.
+vec3 FacingNormal(vec3 normal, vec3 toLight, vec3 toViewer)
 {
-  vec3 there = look.LitSides == LIT_LIKE_MESHES ? toViewer : toLight;
-  return look.LitSides != ONE_SIDED && dot(normal, there) > 0.0 ? normal : -normal;
+  vec3 seenFrom = look.LitSides == LIT_LIKE_MESHES ? toViewer : toLight;
+  return look.LitSides != ONE_SIDED && dot(normal, seenFrom) > 0.0 ? normal : -normal;
 }
 
 vec3 Illuminate(vec3 position, vec3 normal, vec3 toViewer, vec3 surfaceColor)
@@ -56,13 +49,14 @@ vec3 Illuminate(vec3 position, vec3 normal, vec3 toViewer, vec3 surfaceColor)
   {
     vec3 toLight;
     float attenuation = Attenuation(look.Lights[i], position, toLight);
-    vec3 facing = Facing(normal, toLight, toViewer);
+    vec3 facing = FacingNormal(normal, toLight, toViewer);
     float cosine = dot(facing, toLight);
     if (cosine > 0.0)
     {
       float highlight = max(dot(reflect(-toLight, facing), toViewer), 0.0);
       vec3 diffuse = look.Diffuse * cosine * look.Lights[i].Diffuse * surfaceColor;
-      vec3 specular = look.Specular * pow(highlight, look.SpecularPower) * look.Lights[i].Specular;
+      vec3 specular =
+        look.Specular * pow(highlight, look.SpecularPower) * look.Lights[i].Specular;
       color += attenuation * (diffuse + specular);
     }
   }
@@ -70,13 +64,13 @@ vec3 Illuminate(vec3 position, vec3 normal, vec3 toViewer, vec3 surfaceColor)
 }
 #endif
 
-// Colour of a surface at parameter t of a pixel's ray; unlit, the normal does not matter.
-vec3 Shade(uint pixel, float t, vec3 normal, int surface)
+// Colour of a hit at parameter t of a pixel's ray; where nothing is lit the normal does not count.
+vec3 Shade(uint pixel, float t, vec3 normal, int isovalue)
 {
 #ifdef COLORED
-  vec3 color = PaletteColor(ColorValueOf(pixel));
+  vec3 color = ColorOfValue(ColorValueOf(pixel));
 #else
-  vec3 color = look.Colors[surface].Rgb;
+  vec3 color = look.Colors[isovalue].Rgb;
 #endif
 #ifdef LIT
   vec3 direction = EyeRayDirection(pixel);

@@ -1,4 +1,4 @@
-// The partial or complete image goes to the window, lit, with the depth that opaque geometry is tested against.
+// Draws the image, partial or complete, lit, into the window with its depths.
 // In: Hits, Normals or Layers.
 
 #include "Shared/Scene.glsl"
@@ -15,11 +15,11 @@
 #endif
 
 layout(location = 0) out vec4 fragmentColor;
-// where VTK's passes ask for them, such as ambient occlusion: in view coordinates
+// in view coordinates, for passes of VTK's such as ambient occlusion
 layout(location = 1) out vec4 fragmentPosition;
 layout(location = 2) out vec4 fragmentNormal;
 
-// A hit shows as soon as it is lit.
+// Tells whether a pixel has a hit that is finished: lit, coloured or blended.
 #ifdef TRANSLUCENT
 bool Shows(uint pixel)
 {
@@ -31,7 +31,7 @@ bool Shows(uint pixel)
 #ifdef HAS_NORMALS
   return normals[pixel] != NO_NORMAL;
 #elif defined(COLORED)
-  return hits[pixel] != NO_HIT && !isnan(ColorValueOf(pixel)); // all ones until it is found
+  return hits[pixel] != NO_HIT && !isnan(ColorValueOf(pixel)); // NaN until it is found
 #else
   return hits[pixel] != NO_HIT;
 #endif
@@ -49,17 +49,17 @@ void main()
   gl_FragDepth = WindowDepth(t);
 #ifdef TRANSLUCENT
   fragmentColor = BlendedLayers(pixel);
-  fragmentPosition = vec4(0.0); // blended like the colour: those of what lies behind stay
+  fragmentPosition = vec4(0.0); // keeps what lies behind: it is blended like the colour
   fragmentNormal = vec4(0.0);
 #else
   vec3 direction = EyeRayDirection(pixel);
 #ifdef HAS_NORMALS
   vec3 normal = UnpackNormal(normals[pixel]);
 #else
-  vec3 normal = -normalize(direction); // the best guess of an unlit surface's
+  vec3 normal = -normalize(direction); // unlit hits have none: face the viewer
 #endif
   fragmentPosition = vec4(EyeRayOrigin(pixel) + t * direction, 1.0);
   fragmentNormal = vec4(dot(normal, direction) > 0.0 ? -normal : normal, 1.0);
-  fragmentColor = vec4(Shade(pixel, t, normal, HitOf(pixel).Surface), 1.0);
+  fragmentColor = vec4(Shade(pixel, t, normal, HitOf(pixel).Isovalue), 1.0);
 #endif
 }

@@ -1,4 +1,4 @@
-// The image for a vtkHardwareSelector: where a surface shows, the prop's identifier or that of the cell that was hit.
+// Draws for a vtkHardwareSelector: identifiers of the prop or of the cells that were hit.
 // In: Hits.
 
 #include "Shared/Scene.glsl"
@@ -10,12 +10,13 @@ uniform vec4 selected; // the prop's identifier as a colour; w: which 24 bits of
 
 layout(location = 0) out vec4 fragmentColor;
 
-// 24 bits of the number of the cell that holds the point at parameter t, as VTK's meshes have it.
+// 24 of the bits of VTK's number of the cell that holds the point at parameter t.
 vec3 CellColor(uint pixel, float t, int part)
 {
   Ray ray = CameraRay(pixel);
   ivec3 cells = volume.Samples - 1;
-  uvec3 cell = uvec3(clamp(ivec3(floor(ray.Origin + double(t) * ray.Direction)), ivec3(0), cells - 1));
+  ivec3 at = ivec3(floor(ray.Origin + double(t) * ray.Direction));
+  uvec3 cell = uvec3(clamp(at, ivec3(0), cells - 1));
   uint row = cell.y + uint(cells.y) * cell.z;
   uint high, low, carry;
   umulExtended(row, uint(cells.x), high, low);

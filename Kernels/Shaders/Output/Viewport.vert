@@ -1,4 +1,4 @@
-// A triangle that covers the viewport.
+// Draws a triangle that covers the viewport.
 
 void main()
 {

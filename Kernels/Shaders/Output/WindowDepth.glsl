@@ -1,4 +1,4 @@
-// Where a fragment is in the image, and how deep in the window.
+// The fragment's pixel in the image, and its depth in the window.
 
 uint FragmentPixel()
 {
@@ -6,6 +6,7 @@ uint FragmentPixel()
   return uint(xy.y * view.ImageSize.x + xy.x);
 }
 
+// Depth of the point at parameter t of a ray.
 float WindowDepth(float t)
 {
   float z = (look.ClipZ + t * look.ClipZPerT) / (look.ClipW + t * look.ClipWPerT);

@@ -1,10 +1,11 @@
-// The cells of a block's dual grid reach into the next block where they are the last on an axis. Does the ray
-// pass through such ones, between parameters t0 and t1? Only then is the neighbour needed (section 3.4).
+// Finds the neighbours whose samples a ray needs to pass through a block: the last cells on an axis
+// have their far corners in the next block. Returns 1 on each axis on which the ray passes through
+// such cells between parameters t0 and t1, else 0.
 ivec3 DualGridReach(Ray ray, ivec3 block, double t0, double t1)
 {
-  dvec3 last = PlanesT(ray, 4 * block + 3);
+  dvec3 lastCells = PlanesT(ray, BLOCK_SIDE * block + (BLOCK_SIDE - 1));
   bvec3 forward = greaterThan(ray.Step, ivec3(0));
-  ivec3 reached = ivec3(lessThanEqual(last, dvec3(t1))) * ivec3(forward) +
-    ivec3(greaterThan(last, dvec3(t0))) * ivec3(not(forward));
+  ivec3 reached = ivec3(lessThanEqual(lastCells, dvec3(t1))) * ivec3(forward) +
+    ivec3(greaterThan(lastCells, dvec3(t0))) * ivec3(not(forward));
   return min(reached, volume.Blocks - 1 - block);
 }

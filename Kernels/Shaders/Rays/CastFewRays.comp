@@ -71,7 +71,7 @@ bool CastRay(uint pixel)
     barrier();
     if (firstHit == lane)
     {
-      KeepHit(pixel, hit, float(HitT(ray, hit.Key)));
+      StoreHit(pixel, hit, float(HitT(ray, hit.Key)));
 #ifdef TRANSLUCENT
       rays[pixel] = BlockIndex(block);
 #endif

@@ -68,7 +68,7 @@ uint CastRay(uint pixel, bool fresh)
   bool struck = hit.Key != NO_HIT;
   if (struck)
   {
-    KeepHit(pixel, hit, float(HitT(ray, hit.Key)));
+    StoreHit(pixel, hit, float(HitT(ray, hit.Key)));
   }
 #ifdef TRANSLUCENT
   bool goesOn = waits || struck;

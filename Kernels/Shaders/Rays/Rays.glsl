@@ -1,8 +1,8 @@
-// Rays and their parameters (section 3.2). Everything a ray meets is ordered by the parameters t of the
-// voxel planes it crosses; a plane's t is one formula of the ray and the plane's integer index, in double
-// precision. So any stage, in any pass, finds the same t for the same plane, and a ray's state is just the
-// block it is in: nothing accumulates, nothing is derived back from t, and neighbouring cells share their
-// face's t to the last bit.
+// Rays, and what orders that which they meet: the parameters t of the voxel planes that they cross.
+// A plane's t is one formula of the ray and the plane's integer index, in double precision. Every
+// stage in every pass therefore finds the same t for the same plane, and neighbouring cells share
+// their face's t to the last bit. Nothing accumulates and nothing is derived back from t, so that
+// the state of a ray is just the block that it is in.
 
 #include "Surface/Hits.glsl"
 
@@ -12,10 +12,10 @@ struct Ray
   dvec3 Direction; // index space, per unit of t
   dvec3 Inverse;   // 1 / direction; finite and huge where the ray is parallel to the planes
   ivec3 Step;      // +1 or -1
-  double Enter, Leave; // parameters at which the ray enters and leaves the volume, or the part of it that is drawn
+  double Enter, Leave; // parameters between which the ray is in the part that is drawn
 };
 
-// Parameters at which the ray crosses the plane of this index on each axis.
+// Parameters at which a ray crosses the plane with this index on each axis.
 dvec3 PlanesT(Ray ray, ivec3 index)
 {
   precise dvec3 t = (dvec3(index) - ray.Origin) * ray.Inverse;
@@ -32,16 +32,18 @@ double LargestOf(dvec3 v)
   return max(v.x, max(v.y, v.z));
 }
 
-// Parallel rays: planes ahead are never reached, planes behind were crossed long ago.
+// Keeps planes finite to which a ray is parallel: it never reaches those ahead, and crossed those
+// behind long ago.
 double FiniteInverse(double d)
 {
   return abs(d) > 1e-290LF ? 1.0LF / d : 1e290LF;
 }
 
-// Centre of a pixel; pixels are numbered in rows from the bottom left.
+// Pixels are numbered in rows from the bottom left.
 dvec2 PixelCentre(uint pixel)
 {
-  return dvec2(double(pixel % uint(view.ImageSize.x)), double(pixel / uint(view.ImageSize.x))) + 0.5LF;
+  uint width = uint(view.ImageSize.x);
+  return dvec2(double(pixel % width), double(pixel / width)) + 0.5LF;
 }
 
 #ifdef CLIPPED
@@ -61,7 +63,7 @@ void ClipRay(inout Ray ray)
 #endif
 
 #if defined(OBSTRUCTED) && defined(BUFFER_HITS)
-// Parameter at which a ray meets opaque geometry of this depth in the window.
+// Parameter at which a ray meets opaque geometry that has this depth in the window.
 double ObstacleT(float depth)
 {
   double z = 2.0LF * double(depth) - 1.0LF;
@@ -75,12 +77,14 @@ Ray CameraRay(uint pixel)
 {
   dvec2 at = PixelCentre(pixel);
   Ray ray;
-  precise dvec3 origin = view.RayOrigin.Base + at.x * view.RayOrigin.PerX + at.y * view.RayOrigin.PerY;
+  precise dvec3 origin =
+    view.RayOrigin.Base + at.x * view.RayOrigin.PerX + at.y * view.RayOrigin.PerY;
   precise dvec3 direction =
     view.RayDirection.Base + at.x * view.RayDirection.PerX + at.y * view.RayDirection.PerY;
   ray.Origin = origin;
   ray.Direction = direction;
-  ray.Inverse = dvec3(FiniteInverse(direction.x), FiniteInverse(direction.y), FiniteInverse(direction.z));
+  ray.Inverse =
+    dvec3(FiniteInverse(direction.x), FiniteInverse(direction.y), FiniteInverse(direction.z));
   ray.Step = 1 - 2 * ivec3(lessThan(direction, dvec3(0.0LF)));
   dvec3 first = PlanesT(ray, view.FirstDrawn);
   dvec3 last = PlanesT(ray, view.LastDrawn);
@@ -105,47 +109,56 @@ vec3 EyeRayOrigin(uint pixel)
 vec3 EyeRayDirection(uint pixel)
 {
   dvec2 at = PixelCentre(pixel);
-  return vec3(view.EyeDirection.Base + at.x * view.EyeDirection.PerX + at.y * view.EyeDirection.PerY);
+  return vec3(
+    view.EyeDirection.Base + at.x * view.EyeDirection.PerX + at.y * view.EyeDirection.PerY);
 }
 
-// ---- tile order: pixels in tiles of 8 x 8, so that neighbours in a work group are neighbours in the image
+// ---- tile order: pixels in square tiles, so that neighbours in a work group are neighbours in the
+// image
+const uint TILE_SIDE = 8u;
+const uint PIXELS_PER_TILE = TILE_SIDE * TILE_SIDE;
+
 uint Tiles(int pixels)
 {
-  return uint(pixels + 7) >> 3;
+  return (uint(pixels) + TILE_SIDE - 1u) / TILE_SIDE;
 }
 
 uint PixelsInTiles()
 {
-  return 64u * Tiles(view.ImageSize.x) * Tiles(view.ImageSize.y);
+  return PIXELS_PER_TILE * Tiles(view.ImageSize.x) * Tiles(view.ImageSize.y);
 }
 
-// NONE for those parts of the last tiles that stick out of the image.
+// NONE where the last tiles reach beyond the image.
 uint PixelInTileOrder(uint order)
 {
-  uint tile = order >> 6;
-  uint x = 8u * (tile % Tiles(view.ImageSize.x)) + (order & 7u);
-  uint y = 8u * (tile / Tiles(view.ImageSize.x)) + ((order >> 3) & 7u);
-  return x < uint(view.ImageSize.x) && y < uint(view.ImageSize.y) ? y * uint(view.ImageSize.x) + x : NONE;
+  uint tile = order / PIXELS_PER_TILE;
+  uint x = TILE_SIDE * (tile % Tiles(view.ImageSize.x)) + order % TILE_SIDE;
+  uint y = TILE_SIDE * (tile / Tiles(view.ImageSize.x)) + (order / TILE_SIDE) % TILE_SIDE;
+  bool inImage = x < uint(view.ImageSize.x) && y < uint(view.ImageSize.y);
+  return inImage ? y * uint(view.ImageSize.x) + x : NONE;
 }
 
 uint TileOrderOf(uint pixel)
 {
   uint x = pixel % uint(view.ImageSize.x);
   uint y = pixel / uint(view.ImageSize.x);
-  return 64u * ((y >> 3) * Tiles(view.ImageSize.x) + (x >> 3)) + 8u * (y & 7u) + (x & 7u);
+  uint tile = (y / TILE_SIDE) * Tiles(view.ImageSize.x) + x / TILE_SIDE;
+  return PIXELS_PER_TILE * tile + TILE_SIDE * (y % TILE_SIDE) + x % TILE_SIDE;
 }
 
-// Blocks that each of so many rays may ask for (N_spec, section 4).
+// Number of blocks that each of `rays` rays may ask for (N_spec of the paper).
 uint Speculation(uint rays)
 {
-  return clamp(ImagePixels() / (PIXELS_PER_BLOCK_AHEAD * max(rays, 1u)), 1u, cache.SpeculationLimit);
+  uint blocks = ImagePixels() / (PIXELS_PER_BLOCK_AHEAD * max(rays, 1u));
+  return clamp(blocks, 1u, cache.SpeculationLimit);
 }
 
-// ---- hit keys: unsigned integers in the order of t
+// ---- hit keys: the place between Enter and Leave in fixed point
 uint HitKey(Ray ray, double t)
 {
   precise double extent = ray.Leave - ray.Enter;
-  precise double fraction = extent > 0.0LF ? clamp((t - ray.Enter) / extent, 0.0LF, 1.0LF) : 0.0LF;
+  precise double fraction =
+    extent > 0.0LF ? clamp((t - ray.Enter) / extent, 0.0LF, 1.0LF) : 0.0LF;
   return uint(fraction * HIT_STEPS);
 }
 

@@ -1,87 +1,90 @@
-// Macrocell grid traversal (section 3.3): the walk of a ray over macrocells and their blocks, after Amanatides and
-// Woo, to the next block whose range holds the isovalue. A ray's position at parameter T is: every plane with t <= T
-// is crossed. Stepping a block, skipping a macrocell and starting inside the volume all obey this one rule, hence agree.
+// Walks a ray over macrocells and their blocks, after Amanatides and Woo, to the next block whose
+// range of values holds an isovalue. At parameter t a ray has crossed every plane whose parameter
+// is not greater. Stepping to the next block, skipping a macrocell and starting inside the volume
+// all obey this one rule and therefore agree.
 
-// Blocks that hold cells; a last block of a single sample holds none.
+// The last block on each axis that holds cells: a block of a single sample holds none.
 ivec3 LastCellBlock()
 {
-  return (volume.Samples - 2) / 4;
+  return (volume.Samples - 2) / BLOCK_SIDE;
 }
 
-// Planes through which the ray enters and leaves element `e` of a grid of `size` voxels an element.
-ivec3 EntryPlanes(Ray ray, ivec3 e, int size)
+// Planes through which a ray enters an element of a grid whose elements have `side` cells.
+ivec3 EntryPlanes(Ray ray, ivec3 element, int side)
 {
-  return (e + (1 - ray.Step) / 2) * size;
+  return (element + (1 - ray.Step) / 2) * side;
 }
 
-ivec3 ExitPlanes(Ray ray, ivec3 e, int size)
+ivec3 ExitPlanes(Ray ray, ivec3 element, int side)
 {
-  return (e + (1 + ray.Step) / 2) * size;
+  return (element + (1 + ray.Step) / 2) * side;
 }
 
 double BlockEntry(Ray ray, ivec3 block)
 {
-  return max(ray.Enter, LargestOf(PlanesT(ray, EntryPlanes(ray, block, 4))));
+  return max(ray.Enter, LargestOf(PlanesT(ray, EntryPlanes(ray, block, BLOCK_SIDE))));
 }
 
 double BlockExit(Ray ray, ivec3 block)
 {
-  return min(ray.Leave, SmallestOf(PlanesT(ray, ExitPlanes(ray, block, 4))));
+  return min(ray.Leave, SmallestOf(PlanesT(ray, ExitPlanes(ray, block, BLOCK_SIDE))));
 }
 
-// Does a range hold both a value below the isovalue and one that is not?
-bool Straddles(float low, float high, int surface)
+// Tells whether a range has a value below the isovalue and one that is not.
+bool StraddlesIsovalue(float low, float high, int number)
 {
-  Isovalue isovalue = view.Isovalues[surface];
+  Isovalue isovalue = view.Isovalues[number];
   precise float below = (low - isovalue.High) - isovalue.Low;
   precise float above = (high - isovalue.High) - isovalue.Low;
   return below < 0.0 && above >= 0.0;
 }
 
-// The same for any of the isovalues.
-bool Straddles(float low, float high)
+bool StraddlesAnyIsovalue(float low, float high)
 {
 #ifdef SEVERAL_ISOVALUES
   for (int i = 0; i < view.NumberOfIsovalues; ++i)
   {
-    if (Straddles(low, high, i))
+    if (StraddlesIsovalue(low, high, i))
     {
       return true;
     }
   }
   return false;
 #else
-  return Straddles(low, high, 0);
+  return StraddlesIsovalue(low, high, 0);
 #endif
 }
 
-// Where the ray crosses the plane behind which it leaves `block`, at or before parameter t, it moves on.
-ivec3 Crossed(Ray ray, ivec3 block, double t)
+// The step to the next block on each axis on which the ray leaves this one by parameter t.
+ivec3 StepBy(Ray ray, ivec3 block, double t)
 {
-  return ivec3(lessThanEqual(PlanesT(ray, ExitPlanes(ray, block, 4)), dvec3(t))) * ray.Step;
+  dvec3 exits = PlanesT(ray, ExitPlanes(ray, block, BLOCK_SIDE));
+  return ivec3(lessThanEqual(exits, dvec3(t))) * ray.Step;
 }
 
-// The block the ray is in when it enters the volume: a rounded guess, which the planes put right.
+// The block in which the ray enters the volume. Rounding may put the first guess into a neighbour;
+// the planes correct it.
 ivec3 FirstBlock(Ray ray)
 {
   ivec3 last = LastCellBlock();
   dvec3 p = ray.Origin + ray.Enter * ray.Direction;
-  ivec3 block = ivec3(clamp(floor(p / 4.0LF), dvec3(0.0LF), dvec3(last)));
+  ivec3 block = ivec3(clamp(floor(p / double(BLOCK_SIDE)), dvec3(0.0LF), dvec3(last)));
   for (int i = 0; i < 2; ++i)
   {
-    block -= ivec3(greaterThan(PlanesT(ray, EntryPlanes(ray, block, 4)), dvec3(ray.Enter))) * ray.Step;
+    dvec3 entries = PlanesT(ray, EntryPlanes(ray, block, BLOCK_SIDE));
+    block -= ivec3(greaterThan(entries, dvec3(ray.Enter))) * ray.Step;
   }
   for (int i = 0; i < 2; ++i)
   {
-    block += Crossed(ray, block, ray.Enter);
+    block += StepBy(ray, block, ray.Enter);
   }
   return clamp(block, ivec3(0), last);
 }
 
-// One step of the walk over blocks; false where the ray has left the volume.
+// Moves to the next block on the ray; false if the ray leaves the volume.
 bool NextBlock(Ray ray, inout ivec3 block)
 {
-  dvec3 exits = PlanesT(ray, ExitPlanes(ray, block, 4));
+  dvec3 exits = PlanesT(ray, ExitPlanes(ray, block, BLOCK_SIDE));
   double t = SmallestOf(exits);
   if (t >= ray.Leave)
   {
@@ -91,29 +94,30 @@ bool NextBlock(Ray ray, inout ivec3 block)
   return InGrid(block);
 }
 
-// Leaves the macrocell that holds `block`; false where the ray has left the volume.
+// Moves to the first block behind the macrocell that holds `block`; false if the ray leaves the
+// volume.
 bool SkipMacrocell(Ray ray, inout ivec3 block)
 {
-  ivec3 coarse = block >> 2;
-  dvec3 exits = PlanesT(ray, ExitPlanes(ray, coarse, 16));
+  ivec3 macrocell = MacrocellOf(block);
+  dvec3 exits = PlanesT(ray, ExitPlanes(ray, macrocell, BLOCK_SIDE * MACROCELL_SIDE));
   double t = SmallestOf(exits);
   if (t >= ray.Leave)
   {
     return false;
   }
   ivec3 within = block;
-  for (int i = 0; i < 3; ++i)
+  for (int i = 1; i < MACROCELL_SIDE; ++i)
   {
-    within += Crossed(ray, within, t);
+    within += StepBy(ray, within, t);
   }
-  // on the axes where it leaves the macrocell it comes to the first block behind it
-  ivec3 behind = 4 * coarse - 1 + 5 * (1 + ray.Step) / 2;
+  // on the axes on which the ray leaves the macrocell: the block just behind it
+  ivec3 behind = MACROCELL_SIDE * macrocell - 1 + (MACROCELL_SIDE + 1) * (1 + ray.Step) / 2;
   block = within + (behind - within) * ivec3(lessThanEqual(exits, dvec3(t)));
   return InGrid(block);
 }
 
 #ifdef CROPPED
-// Number of the cropping region that a point lies in, in vtkVolumeMapper's order.
+// Number of the cropping region that holds a point, in vtkVolumeMapper's order.
 int CroppingRegion(dvec3 point)
 {
   ivec3 side =
@@ -121,26 +125,26 @@ int CroppingRegion(dvec3 point)
   return side.x + 3 * side.y + 9 * side.z;
 }
 
-bool Drawn(int region)
+bool IsRegionDrawn(int region)
 {
   return (view.DrawnRegions >> region & 1) != 0;
 }
 
-// Does a block lie in one region, as a whole, which is not drawn?
-bool OutOfSight(ivec3 block)
+// Tells whether one region that is not drawn holds the whole block.
+bool IsCroppedAway(ivec3 block)
 {
-  int region = CroppingRegion(dvec3(4 * block));
-  return region == CroppingRegion(dvec3(4 * block + 4)) && !Drawn(region);
+  int region = CroppingRegion(dvec3(BLOCK_SIDE * block));
+  return region == CroppingRegion(dvec3(BLOCK_SIDE * block + BLOCK_SIDE)) && !IsRegionDrawn(region);
 }
 #endif
 
-// The macrocell that the ray is in.
+// The macrocell that a ray is in, so that its record is read once.
 struct GridCursor
 {
-  ivec3 Coarse;
+  ivec3 Macrocell;
   uint Index;
   vec2 Range;
-  bool Active; // its range holds the isovalue
+  bool Active; // the range holds an isovalue
 };
 
 GridCursor OutsideGrid()
@@ -148,18 +152,19 @@ GridCursor OutsideGrid()
   return GridCursor(ivec3(-1), 0u, vec2(0.0), false);
 }
 
-void MoveCursor(inout GridCursor at, ivec3 coarse)
+void MoveCursor(inout GridCursor at, ivec3 macrocell)
 {
-  at.Coarse = coarse;
-  at.Index = MacrocellIndex(coarse);
+  at.Macrocell = macrocell;
+  at.Index = MacrocellIndex(macrocell);
   at.Range = vec2(macrocells[at.Index].Low, macrocells[at.Index].High);
-  at.Active = Straddles(at.Range.x, at.Range.y);
+  at.Active = StraddlesAnyIsovalue(at.Range.x, at.Range.y);
 }
 
-bool BlockActive(GridCursor at, ivec3 block)
+// Tells whether a block of the cursor's macrocell may hold a surface that is drawn.
+bool IsBlockActive(GridCursor at, ivec3 block)
 {
 #ifdef CROPPED
-  if (OutOfSight(block))
+  if (IsCroppedAway(block))
   {
     return false;
   }
@@ -169,25 +174,26 @@ bool BlockActive(GridCursor at, ivec3 block)
   uint range = (local & 1u) == 0u ? word & 0xFFFFu : word >> 16;
   uint low = range & 0xFFu;
   uint high = range >> 8;
-  return low <= high && Straddles(RangeLow(at.Range, low), RangeHigh(at.Range, high));
+  return low <= high && StraddlesAnyIsovalue(RangeLow(at.Range, low), RangeHigh(at.Range, high));
 }
 
-// Walks on from `block`, itself included; false where the ray leaves the volume first.
+// Walks from `block`, which counts too, to the next active one; false if the ray leaves the volume
+// before.
 bool FindActiveBlock(Ray ray, inout ivec3 block, inout GridCursor at)
 {
   bool inside = true;
   while (inside)
   {
-    if ((block >> 2) != at.Coarse)
+    if (MacrocellOf(block) != at.Macrocell)
     {
-      MoveCursor(at, block >> 2);
+      MoveCursor(at, MacrocellOf(block));
     }
     if (!at.Active)
     {
       inside = SkipMacrocell(ray, block);
       continue;
     }
-    if (BlockActive(at, block))
+    if (IsBlockActive(at, block))
     {
       return true;
     }

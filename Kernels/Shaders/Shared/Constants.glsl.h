@@ -25,6 +25,7 @@ const int LIT_LIKE_MESHES = 2;
 // The grid: ZFP's blocks of samples, and macrocells of blocks.
 const int BLOCK_SIDE_LOG2 = 2;
 const int BLOCK_SIDE = 1 << BLOCK_SIDE_LOG2;
+const int ROWS_PER_BLOCK = BLOCK_SIDE * BLOCK_SIDE; // of samples in x direction
 const int SAMPLES_PER_BLOCK = BLOCK_SIDE * BLOCK_SIDE * BLOCK_SIDE;
 const int MACROCELL_SIDE_LOG2 = 2; // in blocks
 const int MACROCELL_SIDE = 1 << MACROCELL_SIDE_LOG2;

@@ -1,4 +1,20 @@
-// The two-level macrocell grid (section 3.1): ZFP's blocks of 4^3 voxels, and macrocells of 4^3 blocks.
+// The grid of two levels: ZFP's blocks of samples, and macrocells of blocks.
+
+// Block that holds a sample, or a cell whose lowest corner is this sample.
+ivec3 BlockOf(ivec3 voxel)
+{
+  return voxel >> BLOCK_SIDE_LOG2;
+}
+
+uvec3 PlaceInBlock(ivec3 voxel)
+{
+  return uvec3(voxel) & uint(BLOCK_SIDE - 1);
+}
+
+ivec3 MacrocellOf(ivec3 block)
+{
+  return block >> MACROCELL_SIDE_LOG2;
+}
 
 ivec3 BlockCoordinates(uint block)
 {
@@ -12,24 +28,25 @@ uint BlockIndex(ivec3 b)
   return uint(b.x) + uint(volume.Blocks.x) * (uint(b.y) + uint(volume.Blocks.y) * uint(b.z));
 }
 
-bool InGrid(ivec3 b)
+bool InGrid(ivec3 block)
 {
-  return all(greaterThanEqual(b, ivec3(0))) && all(lessThan(b, volume.Blocks));
+  return all(greaterThanEqual(block, ivec3(0))) && all(lessThan(block, volume.Blocks));
 }
 
 uint MacrocellIndex(ivec3 c)
 {
-  return uint(c.x) + uint(volume.Macrocells.x) * (uint(c.y) + uint(volume.Macrocells.y) * uint(c.z));
+  return uint(c.x) +
+    uint(volume.Macrocells.x) * (uint(c.y) + uint(volume.Macrocells.y) * uint(c.z));
 }
 
 // Number of a block within its macrocell.
 uint LocalIndex(ivec3 block)
 {
-  uvec3 local = uvec3(block) & 3u;
-  return local.x + 4u * local.y + 16u * local.z;
+  uvec3 local = uvec3(block) & uint(MACROCELL_SIDE - 1);
+  return local.x + uint(MACROCELL_SIDE) * (local.y + uint(MACROCELL_SIDE) * local.z);
 }
 
-// Blocks that have room decoded: in the cache, or all of them.
+// Number of blocks that have room for their samples: in the cache, or all of the volume.
 uint NumberOfSlots()
 {
 #ifdef HAS_CACHE_MAP
@@ -39,15 +56,17 @@ uint NumberOfSlots()
 #endif
 }
 
-// A block's range is kept in 8 + 8 bits, as steps within its macrocell's range, rounded outwards.
-float RangeLow(vec2 coarse, uint q)
+// The lowest value of a block, decoded from 8 bits: steps within its macrocell's range.
+float RangeLow(vec2 macrocellRange, uint steps)
 {
-  precise float low = coarse.x + float(q) * (coarse.y / 255.0 - coarse.x / 255.0);
-  return q == 0u ? coarse.x : low;
+  precise float unit = macrocellRange.y / 255.0 - macrocellRange.x / 255.0;
+  precise float low = macrocellRange.x + float(steps) * unit;
+  return steps == 0u ? macrocellRange.x : low;
 }
 
-float RangeHigh(vec2 coarse, uint q)
+float RangeHigh(vec2 macrocellRange, uint steps)
 {
-  precise float high = coarse.x + float(q) * (coarse.y / 255.0 - coarse.x / 255.0);
-  return q == 255u ? coarse.y : high;
+  precise float unit = macrocellRange.y / 255.0 - macrocellRange.x / 255.0;
+  precise float high = macrocellRange.x + float(steps) * unit;
+  return steps == 255u ? macrocellRange.y : high;
 }

@@ -1,7 +1,7 @@
-// Macrocell grid construction (section 3.1), once a volume: a work group takes the blocks of a macrocell and those
-// that its dual grids reach into, decodes them unless the whole volume is decoded already, and keeps the exact value
-// range of every block's 5^3 dual grid, quantised outwards to 8 + 8 bits within the range of the macrocell. Samples of
-// hidden cells alone do not count.
+// Builds the macrocell grid, once for a volume. A work group takes the blocks of a macrocell and their
+// neighbours, because a block's cells need 5^3 samples (its dual grid). It decodes them unless the
+// whole volume has been decoded, and stores the range of values of each block's cells in 8 + 8 bits:
+// steps within the macrocell's exact range, rounded outwards. Samples of hidden cells do not count.
 // In: Stream or CacheValues, HiddenCells. Out: Macrocells.
 
 #define CACHE_BY_ROWS
@@ -18,15 +18,16 @@
 #include "Store/HiddenCells.glsl"
 #endif
 
-#define GRID 17 // samples of a macrocell's dual grids on an axis
+const int GRID = BLOCK_SIDE * MACROCELL_SIDE + 1; // samples of a macrocell's cells on an axis
+const uint LOADED_SIDE = uint(MACROCELL_SIDE) + 1u; // blocks on an axis that hold them
 
 shared float samples[GRID * GRID * GRID];
-shared vec2 localRanges[64];
+shared vec2 localRanges[BLOCKS_PER_MACROCELL];
 
-// Keeps those samples of row y + 4 z of a block that the macrocell's dual grids reach.
-void KeepRow(ivec3 local, int row, uvec4 bits)
+// Stores those samples of a block's row y + 4 z that the macrocell's cells need.
+void StoreRow(ivec3 local, int row, uvec4 bits)
 {
-  ivec3 at = 4 * local + ivec3(0, row & 3, row >> 2);
+  ivec3 at = BLOCK_SIDE * local + ivec3(0, row % BLOCK_SIDE, row / BLOCK_SIDE);
   if (at.y < GRID && at.z < GRID)
   {
     vec4 values = uintBitsToFloat(bits);
@@ -45,22 +46,24 @@ void LoadBlock(ivec3 local, uint block)
 {
 #ifdef BUFFER_STREAM
   DecodedBlock decoded = DecodeBlock(block, gl_LocalInvocationIndex);
-#define KEEP_ROW(r) KeepRow(local, r, decoded.Row[r]);
-  FOR_ROWS(KEEP_ROW)
+#define STORE_ROW(r) StoreRow(local, r, decoded.Row[r]);
+  FOR_ROWS(STORE_ROW)
 #else
-  for (int row = 0; row < 16; ++row)
+  for (int row = 0; row < ROWS_PER_BLOCK; ++row)
   {
-    KeepRow(local, row, cacheRows[16u * block + uint(row)]);
+    StoreRow(local, row, cacheRows[uint(ROWS_PER_BLOCK) * block + uint(row)]);
   }
 #endif
 }
 
-// Loads the samples of 5^3 blocks from the macrocell's first one on, a block a lane.
+// Loads the macrocell's blocks and their neighbours, from its first one on, each by a lane.
 void LoadSamples(ivec3 firstBlock)
 {
-  for (uint i = gl_LocalInvocationIndex; i < 125u; i += GROUP_SIZE)
+  const uint count = LOADED_SIDE * LOADED_SIDE * LOADED_SIDE;
+  for (uint i = gl_LocalInvocationIndex; i < count; i += GROUP_SIZE)
   {
-    ivec3 local = ivec3(i % 5u, (i / 5u) % 5u, i / 25u);
+    uvec3 place = uvec3(i, i / LOADED_SIDE, i / (LOADED_SIDE * LOADED_SIDE)) % LOADED_SIDE;
+    ivec3 local = ivec3(place);
     ivec3 block = firstBlock + local;
     if (all(lessThan(block, volume.Blocks)))
     {
@@ -70,6 +73,7 @@ void LoadSamples(ivec3 firstBlock)
   barrier();
 }
 
+// Extends a range (low, high) by a sample.
 void Extend(inout vec2 range, ivec3 at)
 {
   float value = samples[at.x + GRID * (at.y + GRID * at.z)];
@@ -77,17 +81,18 @@ void Extend(inout vec2 range, ivec3 at)
 }
 
 #ifdef HAS_HIDDEN_CELLS
-// Where some of a block's cells are hidden: of the corners of the others, of `count` cells per axis.
+// The range of the corners of a block's cells that are not hidden; it has `count` cells per axis.
 vec2 VisibleRange(vec2 range, uvec2 hidden, ivec3 local, ivec3 count)
 {
-  for (int i = 0; i < 64; ++i)
+  for (int i = 0; i < SAMPLES_PER_BLOCK; ++i)
   {
-    ivec3 cell = ivec3(i, i >> 2, i >> 4) & 3;
+    ivec3 cell = ivec3(i, i / BLOCK_SIDE, i / ROWS_PER_BLOCK) % BLOCK_SIDE;
     if (all(lessThan(cell, count)) && !Hides(hidden, cell))
     {
       for (int corner = 0; corner < 8; ++corner)
       {
-        Extend(range, 4 * local + cell + (ivec3(corner, corner >> 1, corner >> 2) & 1));
+        ivec3 side = ivec3(corner, corner >> 1, corner >> 2) & 1;
+        Extend(range, BLOCK_SIDE * local + cell + side);
       }
     }
   }
@@ -95,12 +100,12 @@ vec2 VisibleRange(vec2 range, uvec2 hidden, ivec3 local, ivec3 count)
 }
 #endif
 
-// Range of a block's dual grid; empty (low > high) where the block has no cells.
+// The range of a block's dual grid; empty (low > high) if the block has no visible cells.
 vec2 DualGridRange(ivec3 firstBlock, ivec3 local)
 {
   vec2 range = vec2(uintBitsToFloat(0x7F800000u), -uintBitsToFloat(0x7F800000u));
-  ivec3 first = 4 * (firstBlock + local);
-  ivec3 last = min(first + 4, volume.Samples - 1);
+  ivec3 first = BLOCK_SIDE * (firstBlock + local);
+  ivec3 last = min(first + BLOCK_SIDE, volume.Samples - 1);
   if (any(greaterThanEqual(first, last)))
   {
     return range;
@@ -119,53 +124,56 @@ vec2 DualGridRange(ivec3 firstBlock, ivec3 local)
     {
       for (int x = 0; x < count.x; ++x)
       {
-        Extend(range, 4 * local + ivec3(x, y, z));
+        Extend(range, BLOCK_SIDE * local + ivec3(x, y, z));
       }
     }
   }
   return range;
 }
 
-// The range as two 8-bit steps of the coarse range, rounded outwards; empty ranges as 255, 0.
-uint Quantize(vec2 range, vec2 coarse)
+// Encodes a range in 8 + 8 bits: steps within the macrocell's range, rounded outwards. An empty one
+// becomes low 255, high 0.
+uint Quantize(vec2 range, vec2 whole)
 {
   if (range.x > range.y)
   {
     return 255u;
   }
-  float unit = coarse.y / 255.0 - coarse.x / 255.0;
+  float unit = whole.y / 255.0 - whole.x / 255.0;
   uint low = 0u;
   uint high = 255u;
   if (unit > 0.0 && !isinf(unit)) // a damaged stream may have infinite values
   {
-    low = uint(clamp((range.x / unit - coarse.x / unit), 0.0, 255.0));
-    high = min(uint(clamp(ceil(range.y / unit - coarse.x / unit), 0.0, 255.0)), 255u);
+    low = uint(clamp((range.x / unit - whole.x / unit), 0.0, 255.0));
+    high = min(uint(clamp(ceil(range.y / unit - whole.x / unit), 0.0, 255.0)), 255u);
   }
-  while (low > 0u && RangeLow(coarse, low) > range.x)
+  while (low > 0u && RangeLow(whole, low) > range.x)
   {
     --low;
   }
-  while (high < 255u && RangeHigh(coarse, high) < range.y)
+  while (high < 255u && RangeHigh(whole, high) < range.y)
   {
     ++high;
   }
   return low | (high << 8);
 }
 
-void StoreRanges(uint cell)
+// Each lane encodes two blocks, which share a word.
+void StoreRanges(uint macrocell)
 {
   uint lane = gl_LocalInvocationIndex;
-  vec2 coarse = localRanges[0];
-  for (uint i = 1u; i < 64u; ++i)
+  vec2 whole = localRanges[0];
+  for (uint i = 1u; i < uint(BLOCKS_PER_MACROCELL); ++i)
   {
-    coarse = vec2(min(coarse.x, localRanges[i].x), max(coarse.y, localRanges[i].y));
+    whole = vec2(min(whole.x, localRanges[i].x), max(whole.y, localRanges[i].y));
   }
-  macrocells[cell].Ranges[lane] =
-    Quantize(localRanges[2u * lane], coarse) | (Quantize(localRanges[2u * lane + 1u], coarse) << 16);
+  uint even = Quantize(localRanges[2u * lane], whole);
+  uint odd = Quantize(localRanges[2u * lane + 1u], whole);
+  macrocells[macrocell].Ranges[lane] = even | odd << 16;
   if (lane == 0u)
   {
-    macrocells[cell].Low = coarse.x;
-    macrocells[cell].High = coarse.y;
+    macrocells[macrocell].Low = whole.x;
+    macrocells[macrocell].High = whole.y;
   }
 }
 
@@ -178,22 +186,28 @@ uvec2 MacrocellsOfDispatch()
 #endif
 }
 
+ivec3 MacrocellCoordinates(uint macrocell)
+{
+  uint width = uint(volume.Macrocells.x);
+  uint height = uint(volume.Macrocells.y);
+  return ivec3(macrocell % width, (macrocell / width) % height, macrocell / (width * height));
+}
+
 void main()
 {
-  uint lane = gl_LocalInvocationIndex;
-  uvec2 cells = MacrocellsOfDispatch();
-  for (uint cell = cells.x + FoldedGroup(); cell < cells.y; cell += gl_NumWorkGroups.x * gl_NumWorkGroups.y)
+  uvec2 range = MacrocellsOfDispatch();
+  uint stride = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
+  for (uint macrocell = range.x + FoldedGroup(); macrocell < range.y; macrocell += stride)
   {
-    ivec3 coarse = ivec3(cell % uint(volume.Macrocells.x),
-      (cell / uint(volume.Macrocells.x)) % uint(volume.Macrocells.y),
-      cell / (uint(volume.Macrocells.x) * uint(volume.Macrocells.y)));
-    LoadSamples(4 * coarse);
-    for (uint i = lane; i < 64u; i += GROUP_SIZE)
+    ivec3 firstBlock = MACROCELL_SIDE * MacrocellCoordinates(macrocell);
+    LoadSamples(firstBlock);
+    for (int i = int(gl_LocalInvocationIndex); i < BLOCKS_PER_MACROCELL; i += int(GROUP_SIZE))
     {
-      localRanges[i] = DualGridRange(4 * coarse, ivec3(i & 3u, (i >> 2) & 3u, i >> 4));
+      ivec3 local = ivec3(i, i / MACROCELL_SIDE, i / (MACROCELL_SIDE * MACROCELL_SIDE));
+      localRanges[i] = DualGridRange(firstBlock, local % MACROCELL_SIDE);
     }
     barrier();
-    StoreRanges(cell);
+    StoreRanges(macrocell);
     barrier();
   }
 }

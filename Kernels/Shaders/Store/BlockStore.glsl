@@ -1,6 +1,7 @@
-// The block store: the only place that knows where a block's bits live. Block i of a fixed-rate ZFP stream starts
-// at bit i * blockbits, which may exceed 32 bits and need not be aligned. A stream longer than one buffer can be
-// lies in several segments of whole layers of macrocells; a dispatch sees one of them.
+// Where a block's bits lie, which no other file knows, and a cursor that reads them. Block i of a
+// fixed-rate ZFP stream begins at bit i * BlockBits, which may need more than 32 bits and is not
+// aligned. A stream that is longer than one buffer can be lies in segments of whole layers of
+// macrocells; a dispatch sees one of them.
 
 uniform uint segment[6]; // first block, number of blocks, bit of the first one, words; first macrocell, number of them
 
@@ -18,7 +19,7 @@ uint BlockBits()
 #endif
 }
 
-// Word and bit of a block's first bit.
+// Word and bit at which a block begins.
 uvec2 BlockStart(uint block)
 {
   uint high, low, carry;
@@ -34,12 +35,12 @@ uint StreamWord(uint word)
   return word < segment[3] ? stream[word] : 0u;
 }
 
-// A cursor over a block's bits that holds the two words around it.
+// A place in a block's bits, with the two words around it.
 struct BitCursor
 {
   uint Low, High;
   uint Word;  // index of Low
-  uint Shift; // bits of Low that are behind, 0 … 31
+  uint Shift; // bits of Low that have been read, 0 … 31
 };
 
 BitCursor OpenBlock(uint block)
@@ -48,8 +49,8 @@ BitCursor OpenBlock(uint block)
   return BitCursor(StreamWord(start.x), StreamWord(start.x + 1u), start.x, start.y);
 }
 
-// The next 32 bits.
-uint NextBits(BitCursor bits)
+// The next 32 bits; the cursor stays.
+uint PeekBits(BitCursor bits)
 {
   return (bits.Low >> bits.Shift) | ((bits.High << 1) << (31u - bits.Shift));
 }
@@ -67,10 +68,10 @@ void SkipBits(inout BitCursor bits, uint n)
   }
 }
 
-// Takes n <= 32 bits.
-uint TakeBits(inout BitCursor bits, uint n)
+// Reads n <= 32 bits.
+uint ReadBits(inout BitCursor bits, uint n)
 {
-  uint value = n == 0u ? 0u : NextBits(bits) & (0xFFFFFFFFu >> (32u - n));
+  uint value = n == 0u ? 0u : PeekBits(bits) & (0xFFFFFFFFu >> (32u - n));
   SkipBits(bits, n);
   return value;
 }

@@ -1,5 +1,4 @@
-// Decompression (section 3.5): of the blocks that rays have asked for, into free cache slots; or, where there is no
-// cache, of the whole volume.
+// Decodes the blocks that rays have requested into free cache slots; without a cache, all blocks.
 // In: CacheRequests, CacheFreeSlots, Stream. Out: CacheValues, CacheMap, Macrocells, Control.
 
 #define CACHE_BY_ROWS
@@ -11,20 +10,21 @@
 #include "Store/ZFPDecode.glsl"
 
 #ifdef HAS_CACHE_MAP
-// The block's bit is cleared for the next pass; it gets the slot whose turn it is, and its place on the map.
+// Gives the block of request i the next free slot and enters it in the map; NONE if there is no slot
+// or no map page. The block may be requested again in the next pass.
 uint SlotFor(uint i, uint block)
 {
   ivec3 coordinates = BlockCoordinates(block);
-  uint cell = MacrocellIndex(coordinates >> 2);
+  uint macrocell = MacrocellIndex(MacrocellOf(coordinates));
   uint local = LocalIndex(coordinates);
-  atomicAnd(macrocells[cell].Requested[local >> 5], ~(1u << (local & 31u)));
+  atomicAnd(macrocells[macrocell].Requested[local >> 5], ~(1u << (local & 31u)));
   if (i >= control.FreeSlots)
   {
     return NONE;
   }
   uint ring = 2u * cache.Slots;
   uint slot = cacheFreeSlots[(control.FreeSlotsBegin + i) % ring];
-  uint page = macrocells[cell].Page;
+  uint page = macrocells[macrocell].Page;
   if (page == NONE)
   {
     uint at = control.FreeSlots + atomicAdd(control.ReturnedSlots, 1u);
@@ -43,6 +43,7 @@ uint SlotFor(uint i, uint block)
 }
 #endif
 
+// Where the slots of the volume that is drawn begin.
 uint FirstSlot()
 {
   return 0u;

@@ -1,5 +1,5 @@
-// Decompression of the volume that gives the colours: the blocks that DecodeBlocks.comp has just decoded of the other,
-// into the same slots; or, where there is no cache, all blocks.
+// Decodes the volume that gives the colours: the blocks that DecodeBlocks.comp has just decoded of
+// the volume that is drawn, into the same slots; without a cache, all blocks.
 // In: CacheRequests, CacheMap, Macrocells, Stream. Out: CacheValues.
 
 #define CACHE_BY_ROWS
@@ -12,13 +12,13 @@
 #include "Store/BlockStore.glsl"
 #include "Store/ZFPDecode.glsl"
 
-// None where the request was refused.
+// NONE if the request was denied.
 uint SlotFor(uint i, uint block)
 {
   return SlotOf(BlockCoordinates(block));
 }
 
-// Behind all slots of the volume that is drawn.
+// The colours' slots follow all those of the volume that is drawn.
 uint FirstSlot()
 {
   return NumberOfSlots();

@@ -1,6 +1,6 @@
-// What both decoding stages do, one invocation a block: of the blocks that rays have asked for, or, where there is no
-// cache, of all. The stage has told SlotFor(i, block), NONE where the block gets none, and FirstSlot(), from which on its
-// slots lie in the buffer of values.
+// The loop of both decoding stages, an invocation for each block: over the blocks that rays have
+// requested, or all of them without a cache. The stage defines SlotFor(i, block), NONE for a block
+// that gets no slot, and FirstSlot(), where its slots begin in the buffer of values.
 
 uint NumberOfBlocks()
 {
@@ -26,7 +26,7 @@ uint BlockAt(uint i)
 
 void StoreBlock(uint slot, DecodedBlock decoded)
 {
-#define STORE_ROW(r) cacheRows[16u * slot + uint(r)] = decoded.Row[r];
+#define STORE_ROW(r) cacheRows[uint(ROWS_PER_BLOCK) * slot + uint(r)] = decoded.Row[r];
   FOR_ROWS(STORE_ROW)
 }
 

@@ -1,8 +1,9 @@
-// Cells in which there is no surface, as a volume's mask says (see vtkBlockMask): of every block 64 bits, bit x + 4y + 16z
-// for the cell with that lowest corner. They come with a block into its cache slot; only what has no slot searches the runs.
+// Cells in which there is no surface because the volume's mask hides them (see vtkBlockMask). A block
+// has 64 bits, bit x + 4 y + 16 z for the cell with this lowest corner. They are copied into the
+// block's cache slot, so that only blocks without a slot have to search the runs.
 
 #ifdef BUFFER_HIDDEN_CELLS
-// A block's bits: those of the last run that begins at or before it.
+// Bits of a block: those of the last run that begins at or before it.
 uvec2 FindHiddenCells(uint block)
 {
   uint low = 0u; // the first run begins at block 0
@@ -23,28 +24,28 @@ uvec2 FindHiddenCells(uint block)
 }
 #endif
 
-// In units of four words: where a slot's bits are in the buffer of values.
+// Row of the buffer of values that holds a slot's bits; they follow all slots.
 uint HiddenRow(uint slot)
 {
 #ifdef COLORED
-  return 32u * NumberOfSlots() + slot;
+  return 2u * uint(ROWS_PER_BLOCK) * NumberOfSlots() + slot;
 #else
-  return 16u * NumberOfSlots() + slot;
+  return uint(ROWS_PER_BLOCK) * NumberOfSlots() + slot;
 #endif
 }
 
 #if defined(BUFFER_CACHE_VALUES) && !defined(CACHE_BY_ROWS)
-// The bits that came with a block into its slot.
+// Bits of a slot's block.
 uvec2 HiddenInSlot(uint slot)
 {
-  uint at = 4u * HiddenRow(slot);
+  uint at = uint(BLOCK_SIDE) * HiddenRow(slot);
   return uvec2(cacheValues[at], cacheValues[at + 1u]);
 }
 #endif
 
 bool Hides(uvec2 hidden, ivec3 cell)
 {
-  uvec3 local = uvec3(cell) & 3u;
-  uint bit = local.x + 4u * local.y + 16u * (local.z & 1u);
+  uvec3 local = PlaceInBlock(cell);
+  uint bit = local.x + uint(BLOCK_SIDE) * local.y + uint(ROWS_PER_BLOCK) * (local.z & 1u);
   return ((local.z < 2u ? hidden.x : hidden.y) >> bit & 1u) != 0u;
 }

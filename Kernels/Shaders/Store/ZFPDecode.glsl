@@ -1,6 +1,7 @@
-// Decoder of one 4^3 float block of a fixed-rate ZFP stream, bit for bit as libzfp 1.0 does it (template/decode.c,
-// decode3.c, codecf.c). One lane decodes one block. Bit planes come one after the other, hence lie in shared memory, a
-// column a lane; all else stays in registers, for which nothing is indexed by a variable.
+// Decodes a 4^3 block of floats of a fixed-rate ZFP stream, bit for bit as libzfp 1.0 does
+// (template/decode.c, decode3.c, codecf.c). One lane decodes one block. Bit planes lie in shared
+// memory, a column for each lane, because they are indexed by a variable; everything else stays in
+// registers, where nothing may be.
 
 #define ZFP_EXPONENT_BITS 8u
 #define ZFP_EXPONENT_BIAS 127
@@ -8,17 +9,19 @@
 
 shared uint zfpPlanes[64u * GROUP_SIZE];
 
-// Plane k of the first 32 coefficients; that of the other 32 is 32 rows below.
+// Place of bit plane k of the first 32 coefficients; that of the other 32 is at 32 + k.
 uint PlaneIndex(uint k, uint lane)
 {
   return k * GROUP_SIZE + lane;
 }
 
-// What follows the verbatim bits of a plane: a zero, and the plane ends; or a one, a run of zeros and the one that ends
-// it, which is implied for the last coefficient. `n`: coefficients that are significant so far.
-bool TakeRun(inout BitCursor bits, inout uint budget, inout uint n, inout uint low, inout uint high)
+// Decodes a step of a plane's run-length coded part. A zero ends the plane: returns false. A one is
+// followed by a run of zeros and the one that ends it, which is implied for the last coefficient.
+// `n` counts the coefficients that are significant so far.
+bool DecodeRun(
+  inout BitCursor bits, inout uint budget, inout uint n, inout uint low, inout uint high)
 {
-  uint window = NextBits(bits);
+  uint window = PeekBits(bits);
   if ((window & 1u) == 0u)
   {
     SkipBits(bits, 1u);
@@ -34,7 +37,7 @@ bool TakeRun(inout BitCursor bits, inout uint budget, inout uint n, inout uint l
     budget -= 32u;
     n += 31u;
     limit -= 31u;
-    window = NextBits(bits);
+    window = PeekBits(bits);
     zeros = window == 0u ? 32u : uint(findLSB(window));
     used = 0u;
   }
@@ -48,8 +51,8 @@ bool TakeRun(inout BitCursor bits, inout uint budget, inout uint n, inout uint l
   return true;
 }
 
-// Embedded coding: bit planes from the most significant one, each a verbatim part of n bits and a run-length coded
-// remainder, until the block's budget of bits is spent.
+// Decodes bit planes from the most significant one on until the block's budget of bits is spent:
+// each is a verbatim part of n bits and a run-length coded remainder.
 void DecodePlanes(inout BitCursor bits, uint budget, uint lane)
 {
   uint n = 0u;
@@ -57,9 +60,9 @@ void DecodePlanes(inout BitCursor bits, uint budget, uint lane)
   {
     uint m = min(n, budget);
     budget -= m;
-    uint low = TakeBits(bits, min(m, 32u));
-    uint high = m > 32u ? TakeBits(bits, m - 32u) : 0u;
-    while (budget > 0u && n < 64u && TakeRun(bits, budget, n, low, high))
+    uint low = ReadBits(bits, min(m, 32u));
+    uint high = m > 32u ? ReadBits(bits, m - 32u) : 0u;
+    while (budget > 0u && n < 64u && DecodeRun(bits, budget, n, low, high))
     {
     }
     zfpPlanes[PlaneIndex(k, lane)] = low;
@@ -67,7 +70,7 @@ void DecodePlanes(inout BitCursor bits, uint budget, uint lane)
   }
 }
 
-// 32 words of 32 bits, four a vector.
+// 32 words of 32 bits.
 struct BitMatrix
 {
   uvec4 Word[8];
@@ -75,8 +78,8 @@ struct BitMatrix
 
 uvec4 LoadPlanes(uint k, uint lane)
 {
-  return uvec4(zfpPlanes[PlaneIndex(k, lane)], zfpPlanes[PlaneIndex(k + 1u, lane)], zfpPlanes[PlaneIndex(k + 2u, lane)],
-    zfpPlanes[PlaneIndex(k + 3u, lane)]);
+  return uvec4(zfpPlanes[PlaneIndex(k, lane)], zfpPlanes[PlaneIndex(k + 1u, lane)],
+    zfpPlanes[PlaneIndex(k + 2u, lane)], zfpPlanes[PlaneIndex(k + 3u, lane)]);
 }
 
 void SwapBits(inout uvec4 a, inout uvec4 b, uint shift, uint mask)
@@ -86,7 +89,7 @@ void SwapBits(inout uvec4 a, inout uvec4 b, uint shift, uint mask)
   b ^= t;
 }
 
-// Bits (x, y) and (z, w) of a vector, and its halves.
+// The last two rounds of the transposition, among the four words of a vector.
 void SwapBitsWithin(inout uvec4 a)
 {
   uvec2 t = ((a.xy >> 2) ^ a.zw) & 0x33333333u;
@@ -95,7 +98,7 @@ void SwapBitsWithin(inout uvec4 a)
   a ^= uvec4(t.x << 1, t.x, t.y << 1, t.y);
 }
 
-// Coefficients from bit planes: a matrix of 32 x 32 bits is transposed, by halves.
+// Makes coefficients of bit planes: transposes a matrix of 32 x 32 bits by swapping halves.
 BitMatrix TransposePlanes(uint first, uint lane)
 {
   BitMatrix m;
@@ -130,7 +133,7 @@ BitMatrix TransposePlanes(uint first, uint lane)
   return m;
 }
 
-// A block's coefficients, then its samples: rows in x direction, row y + 4 z.
+// A block's coefficients, then its samples: rows in x direction, with number y + 4 z.
 struct IntegerBlock
 {
   ivec4 Row[16];
@@ -141,30 +144,46 @@ ivec4 FromNegabinary(uvec4 bits)
   return ivec4((bits ^ ZFP_NEGABINARY) - ZFP_NEGABINARY);
 }
 
-// From the order of increasing sequency (perm_3) to that of the grid.
+// Sorts coefficients from the order of increasing sequency (zfp's perm_3) into that of the grid.
 IntegerBlock Reorder(BitMatrix low, BitMatrix high)
 {
   IntegerBlock block;
-  block.Row[0] = FromNegabinary(uvec4(low.Word[0].x, low.Word[0].y, low.Word[1].w, low.Word[4].y));
-  block.Row[1] = FromNegabinary(uvec4(low.Word[0].z, low.Word[1].z, low.Word[2].w, low.Word[6].z));
-  block.Row[2] = FromNegabinary(uvec4(low.Word[2].x, low.Word[3].z, low.Word[6].y, high.Word[1].z));
-  block.Row[3] = FromNegabinary(uvec4(low.Word[4].z, low.Word[7].y, high.Word[2].y, high.Word[5].y));
-  block.Row[4] = FromNegabinary(uvec4(low.Word[0].w, low.Word[1].y, low.Word[3].x, low.Word[6].w));
-  block.Row[5] = FromNegabinary(uvec4(low.Word[1].x, low.Word[2].z, low.Word[5].x, high.Word[0].w));
-  block.Row[6] = FromNegabinary(uvec4(low.Word[3].y, low.Word[5].y, high.Word[0].z, high.Word[3].y));
-  block.Row[7] = FromNegabinary(uvec4(low.Word[7].x, high.Word[1].x, high.Word[4].x, high.Word[6].w));
-  block.Row[8] = FromNegabinary(uvec4(low.Word[2].y, low.Word[3].w, low.Word[6].x, high.Word[1].w));
-  block.Row[9] = FromNegabinary(uvec4(low.Word[4].x, low.Word[5].z, high.Word[0].y, high.Word[3].z));
-  block.Row[10] = FromNegabinary(uvec4(low.Word[5].w, high.Word[0].x, high.Word[3].x, high.Word[5].z));
-  block.Row[11] = FromNegabinary(uvec4(high.Word[2].x, high.Word[3].w, high.Word[5].w, high.Word[7].z));
-  block.Row[12] = FromNegabinary(uvec4(low.Word[4].w, low.Word[7].z, high.Word[2].z, high.Word[5].x));
-  block.Row[13] = FromNegabinary(uvec4(low.Word[7].w, high.Word[1].y, high.Word[4].y, high.Word[6].z));
-  block.Row[14] = FromNegabinary(uvec4(high.Word[2].w, high.Word[4].z, high.Word[6].x, high.Word[7].y));
-  block.Row[15] = FromNegabinary(uvec4(high.Word[4].w, high.Word[6].y, high.Word[7].x, high.Word[7].w));
+  block.Row[0] =
+    FromNegabinary(uvec4(low.Word[0].x, low.Word[0].y, low.Word[1].w, low.Word[4].y));
+  block.Row[1] =
+    FromNegabinary(uvec4(low.Word[0].z, low.Word[1].z, low.Word[2].w, low.Word[6].z));
+  block.Row[2] =
+    FromNegabinary(uvec4(low.Word[2].x, low.Word[3].z, low.Word[6].y, high.Word[1].z));
+  block.Row[3] =
+    FromNegabinary(uvec4(low.Word[4].z, low.Word[7].y, high.Word[2].y, high.Word[5].y));
+  block.Row[4] =
+    FromNegabinary(uvec4(low.Word[0].w, low.Word[1].y, low.Word[3].x, low.Word[6].w));
+  block.Row[5] =
+    FromNegabinary(uvec4(low.Word[1].x, low.Word[2].z, low.Word[5].x, high.Word[0].w));
+  block.Row[6] =
+    FromNegabinary(uvec4(low.Word[3].y, low.Word[5].y, high.Word[0].z, high.Word[3].y));
+  block.Row[7] =
+    FromNegabinary(uvec4(low.Word[7].x, high.Word[1].x, high.Word[4].x, high.Word[6].w));
+  block.Row[8] =
+    FromNegabinary(uvec4(low.Word[2].y, low.Word[3].w, low.Word[6].x, high.Word[1].w));
+  block.Row[9] =
+    FromNegabinary(uvec4(low.Word[4].x, low.Word[5].z, high.Word[0].y, high.Word[3].z));
+  block.Row[10] =
+    FromNegabinary(uvec4(low.Word[5].w, high.Word[0].x, high.Word[3].x, high.Word[5].z));
+  block.Row[11] =
+    FromNegabinary(uvec4(high.Word[2].x, high.Word[3].w, high.Word[5].w, high.Word[7].z));
+  block.Row[12] =
+    FromNegabinary(uvec4(low.Word[4].w, low.Word[7].z, high.Word[2].z, high.Word[5].x));
+  block.Row[13] =
+    FromNegabinary(uvec4(low.Word[7].w, high.Word[1].y, high.Word[4].y, high.Word[6].z));
+  block.Row[14] =
+    FromNegabinary(uvec4(high.Word[2].w, high.Word[4].z, high.Word[6].x, high.Word[7].y));
+  block.Row[15] =
+    FromNegabinary(uvec4(high.Word[4].w, high.Word[6].y, high.Word[7].x, high.Word[7].w));
   return block;
 }
 
-// Inverse of the lifted decorrelating transform, along four lines of four at once.
+// Inverts the lifted decorrelating transform (zfp's inv_lift) on four lines of four at once.
 void InverseLift(inout ivec4 x, inout ivec4 y, inout ivec4 z, inout ivec4 w)
 {
   y += w >> 1;
@@ -183,7 +202,7 @@ void InverseLift(inout ivec4 x, inout ivec4 y, inout ivec4 z, inout ivec4 w)
   x -= w;
 }
 
-// Along the four rows of a layer.
+// Along the four rows of a slice.
 void InverseLiftRows(inout ivec4 a, inout ivec4 b, inout ivec4 c, inout ivec4 d)
 {
   ivec4 x = ivec4(a.x, b.x, c.x, d.x);
@@ -197,7 +216,7 @@ void InverseLiftRows(inout ivec4 a, inout ivec4 b, inout ivec4 c, inout ivec4 d)
   d = ivec4(x.w, y.w, z.w, w.w);
 }
 
-// Along z, y and x, as libzfp does it.
+// Along z, y and x, in libzfp's order (inv_xform).
 void InverseTransform(inout IntegerBlock b)
 {
   InverseLift(b.Row[0], b.Row[4], b.Row[8], b.Row[12]);
@@ -214,7 +233,8 @@ void InverseTransform(inout IntegerBlock b)
   InverseLiftRows(b.Row[12], b.Row[13], b.Row[14], b.Row[15]);
 }
 
-// The float i * 2^exponent as bits, exact also where it or the scale is subnormal: GPUs may flush those.
+// The bits of the float i * 2^exponent. Exact even if it or the scale is subnormal, where GPUs may
+// flush floats to zero.
 uint Dequantize(int i, int exponent)
 {
   if (exponent >= -126)
@@ -232,7 +252,7 @@ uint Dequantize(int i, int exponent)
   {
     return (bits & 0x807FFFFFu) | (uint(biased) << 23);
   }
-  // subnormal result: a whole multiple of 2^-149, hence an integer in the mantissa
+  // a subnormal result is a whole multiple of 2^-149: an integer in the mantissa
   uint magnitude = (bits & 0x007FFFFFu) | 0x00800000u;
   int shift = 1 - biased;
   return (bits & 0x80000000u) | (shift < 24 ? magnitude >> shift : 0u);
@@ -244,25 +264,27 @@ uvec4 DequantizeRow(ivec4 row, int exponent)
     Dequantize(row.w, exponent));
 }
 
-// A decoded block: the bits of its floats, row y + 4 z of four.
+// The bits of a decoded block's floats: rows in x direction, with number y + 4 z.
 struct DecodedBlock
 {
   uvec4 Row[16];
 };
 
-#define FOR_ROWS(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7) DO(8) DO(9) DO(10) DO(11) DO(12) DO(13) DO(14) DO(15)
+#define FOR_ROWS(DO) \
+  DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7) \
+  DO(8) DO(9) DO(10) DO(11) DO(12) DO(13) DO(14) DO(15)
 
 DecodedBlock DecodeBlock(uint block, uint lane)
 {
   DecodedBlock decoded;
   BitCursor bits = OpenBlock(block);
-  if (TakeBits(bits, 1u) == 0u)
+  if (ReadBits(bits, 1u) == 0u)
   {
 #define ZERO_ROW(r) decoded.Row[r] = uvec4(0u);
     FOR_ROWS(ZERO_ROW)
     return decoded;
   }
-  int exponent = int(TakeBits(bits, ZFP_EXPONENT_BITS)) - ZFP_EXPONENT_BIAS - 30;
+  int exponent = int(ReadBits(bits, ZFP_EXPONENT_BITS)) - ZFP_EXPONENT_BIAS - 30;
   DecodePlanes(bits, BlockBits() - 1u - ZFP_EXPONENT_BITS, lane);
   IntegerBlock integers = Reorder(TransposePlanes(0u, lane), TransposePlanes(32u, lane));
   InverseTransform(integers);

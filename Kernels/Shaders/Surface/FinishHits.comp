@@ -41,7 +41,7 @@ bool FindNormal(Ray ray, uint pixel, out vec3 normal)
   }
   UseBlocks(first, reach);
 #ifdef COLORED
-  KeepColorValue(pixel, ColorValue(hit));
+  StoreColorValue(pixel, ColorValue(hit));
 #endif
 #ifdef LIT
   normal = ViewNormal(Gradient(hit), -normalize(EyeRayDirection(pixel)));
@@ -66,8 +66,8 @@ uint Finish(uint pixel)
   }
 #endif
   Hit hit = HitOf(pixel);
-  vec3 color = Shade(pixel, float(HitT(ray, hit.Key)), normal, hit.Surface);
-  return AddLayer(pixel, color, look.Colors[hit.Surface].Opacity) ? GOES_ON : DONE;
+  vec3 color = Shade(pixel, float(HitT(ray, hit.Key)), normal, hit.Isovalue);
+  return AddLayer(pixel, color, look.Colors[hit.Isovalue].Opacity) ? GOES_ON : DONE;
 }
 #else
 uint Finish(uint pixel)

@@ -1,12 +1,14 @@
-// What a pixel's ray has met, in sections of a word a pixel: the hit's key; its depth, the parameter t, of a
-// translucent image that of the first hit; with several isovalues the number of the one that was hit, and in the upper
-// half that of the first hit; where another volume gives the colours, its value; where opaque geometry hides what is
-// behind it, the window's depth.
+// What the rays of pixels have met. The buffer has a section of a word a pixel for each of:
+// - the hit's key,
+// - its depth, the parameter t; in a translucent image that of the first hit,
+// - with several isovalues the number of the hit's, and in the upper half that of the first hit's,
+// - with another volume for the colours its value at the hit,
+// - in a translucent image the window's depth where opaque geometry may hide the surface.
 
 struct Hit
 {
-  uint Key;    // NO_HIT, or an unsigned integer in the order of t
-  int Surface; // number of the isovalue
+  uint Key;     // NO_HIT, or a number in the order of t: see HitKey in Rays.glsl
+  int Isovalue; // its number
 };
 
 const Hit MISS = Hit(NO_HIT, 0);
@@ -57,13 +59,13 @@ float ColorValueOf(uint pixel)
 
 #ifdef WRITES_HITS
 #ifdef COLORED
-void KeepColorValue(uint pixel, float value)
+void StoreColorValue(uint pixel, float value)
 {
   hits[COLOR_SECTION * ImagePixels() + pixel] = floatBitsToUint(value);
 }
 #endif
 
-void KeepHit(uint pixel, Hit hit, float depth)
+void StoreHit(uint pixel, Hit hit, float depth)
 {
 #ifdef TRANSLUCENT
   bool first = hits[pixel] == NO_HIT;
@@ -77,8 +79,8 @@ void KeepHit(uint pixel, Hit hit, float depth)
   }
 #ifdef SEVERAL_ISOVALUES
   uint at = 2u * ImagePixels() + pixel;
-  uint firstSurface = first ? uint(hit.Surface) : hits[at] >> 16;
-  hits[at] = uint(hit.Surface) | firstSurface << 16;
+  uint firstIsovalue = first ? uint(hit.Isovalue) : hits[at] >> 16;
+  hits[at] = uint(hit.Isovalue) | firstIsovalue << 16;
 #endif
 }
 #endif

@@ -71,14 +71,14 @@ bool HoldsSurface(Corners w)
 #ifdef SEVERAL_ISOVALUES
   for (int i = 0; i < view.NumberOfIsovalues; ++i)
   {
-    if (Straddle(Excess(w, i)))
+    if (StraddlesZero(Excess(w, i)))
     {
       return true;
     }
   }
   return false;
 #else
-  return Straddle(w);
+  return StraddlesZero(w);
 #endif
 }
 
@@ -123,7 +123,7 @@ double HitBetween(double t0, double t1, float s)
 // Hits have an order along the ray: by their keys, and of one key by their surfaces.
 bool Before(Hit a, Hit b)
 {
-  return a.Key < b.Key || (a.Key == b.Key && a.Surface < b.Surface);
+  return a.Key < b.Key || (a.Key == b.Key && a.Isovalue < b.Isovalue);
 }
 
 #ifdef MANY_CROSSINGS
@@ -139,7 +139,7 @@ Hit Crossing(Ray ray, double t0, double t1, float s, int surface)
   counts = counts && (passed.Key == NO_HIT || Before(passed, hit));
 #endif
 #ifdef CROPPED
-  counts = counts && Drawn(CroppingRegion(ray.Origin + t * ray.Direction));
+  counts = counts && IsRegionDrawn(CroppingRegion(ray.Origin + t * ray.Direction));
 #endif
   return counts ? hit : MISS;
 }

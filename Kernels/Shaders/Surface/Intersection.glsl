@@ -1,10 +1,10 @@
-// Intersection of a ray with the trilinear isosurface inside one cell. Along the ray the trilinear
-// interpolant is a cubic; as in Marmitt et al. (2004) its roots are isolated first and refined then, but
-// on its Bernstein coefficients, which are values of the interpolant at the corners of the box spanned
-// by the ray's way through the cell (the cubic's polar form). They are convex combinations of the
-// corners' values: signs are decided without cancellation, and alike on both sides of a shared face.
-// All of it is `precise`: two stages do the same arithmetic and have to find the same bits.
-// Inside is where value - isovalue >= 0; the surface is where inside and outside meet.
+// Intersects a ray with the trilinear isosurface inside a cell. Along the ray the trilinear
+// interpolant is a cubic. As in Marmitt et al. (2004) its roots are first isolated, then refined,
+// but on its Bernstein coefficients: values of the interpolant at corners of the box that the ray's
+// way through the cell spans (the cubic's polar form). They are convex combinations of the values at
+// the cell's corners: signs are decided without cancellation, and alike on both sides of a face.
+// All arithmetic is `precise` because two stages have to find the same bits.
+// A point is inside if value - isovalue >= 0; the surface is where inside and outside meet.
 
 float Lerp(float a, float b, float s)
 {
@@ -24,19 +24,19 @@ vec4 Lerp(vec4 a, vec4 b, float s)
   return value;
 }
 
-// Value - isovalue at a cell's corners: of its lower and its upper z face, x fastest.
+// Values - isovalue at the corners of a cell's lower and upper z face, x fastest.
 struct Corners
 {
   vec4 Low, High;
 };
 
-// Bernstein coefficients along the segment u0 - u1 of the cell's unit cube.
+// Bernstein coefficients along the segment from u0 to u1 in the cell's unit cube.
 vec4 CubicAlong(Corners w, vec3 u0, vec3 u1)
 {
-  // on the four edges in x direction, y fastest, at either end's x
+  // on the four edges in x direction, y fastest, at the x of either end
   vec4 x0 = Lerp(vec4(w.Low.xz, w.High.xz), vec4(w.Low.yw, w.High.yw), u0.x);
   vec4 x1 = Lerp(vec4(w.Low.xz, w.High.xz), vec4(w.Low.yw, w.High.yw), u1.x);
-  // at (x of end a, y of end b) on the lower and upper z face
+  // on the lower and upper z face, at (x of one end, y of one end)
   vec2 f00 = Lerp(x0.xz, x0.yw, u0.y);
   vec2 f10 = Lerp(x1.xz, x1.yw, u0.y);
   vec2 f01 = Lerp(x0.xz, x0.yw, u1.y);
@@ -46,7 +46,7 @@ vec4 CubicAlong(Corners w, vec3 u0, vec3 u1)
   return vec4(Lerp(f00.x, f00.y, u0.z), b1 / 3.0, b2 / 3.0, Lerp(f11.x, f11.y, u1.z));
 }
 
-// The cubic's value at s, by de Casteljau's scheme.
+// Value of the cubic at s, by de Casteljau's algorithm.
 float CubicValue(vec4 b, float s)
 {
   vec3 q = vec3(Lerp(b.x, b.y, s), Lerp(b.y, b.z, s), Lerp(b.z, b.w, s));
@@ -54,7 +54,7 @@ float CubicValue(vec4 b, float s)
   return Lerp(l.x, l.y, s);
 }
 
-// A third of the cubic's derivative at s.
+// A third of the derivative of the cubic at s.
 float CubicSlope(vec4 b, float s)
 {
   vec3 d = b.yzw - b.xyz;
@@ -66,7 +66,7 @@ bool Inside(float value)
   return value >= 0.0;
 }
 
-// Isolation: the parameters at which the cubic turns, in order; 1 where there is none.
+// Isolates roots: the parameters at which the cubic turns, in order, 1 for those that it lacks.
 vec2 Extrema(vec4 b)
 {
   vec3 d = b.yzw - b.xyz; // the derivative's Bernstein coefficients,
@@ -86,7 +86,8 @@ vec2 Extrema(vec4 b)
   return vec2(min(r0, r1), max(r0, r1));
 }
 
-// Iteration: Newton's method, kept within the bracket [low, high] by bisection. The sign changes there.
+// Refines the root in [low, high], where the sign changes, by Newton's method; bisects where a step
+// would leave the bracket.
 float RefineRoot(vec4 b, float low, float high, bool lowInside)
 {
   float s = 0.5 * (low + high);
@@ -112,14 +113,14 @@ float RefineRoot(vec4 b, float low, float high, bool lowInside)
   return s;
 }
 
-// The three pieces between the cubic's ends and its extrema, and which of their ends are inside.
+// The cubic's three monotonic pieces, parted by its extrema, and which of their ends are inside.
 struct Pieces
 {
   vec2 Turn;
   bvec4 Inside;
 };
 
-// False where all of it is on one side: the cubic stays within the hull of its coefficients.
+// False if the whole cubic is on one side, as its coefficients tell: it stays within their hull.
 bool FindPieces(vec4 b, out Pieces pieces)
 {
   bvec4 inside = greaterThanEqual(b, vec4(0.0));
@@ -136,7 +137,7 @@ bool FindPieces(vec4 b, out Pieces pieces)
   return true;
 }
 
-// The first s in [0, 1] at which inside and outside meet; negative if there is none.
+// The first s in [0, 1] at which the surface is; negative if there is none.
 float FirstTransition(vec4 b)
 {
   Pieces at;
@@ -144,31 +145,33 @@ float FirstTransition(vec4 b)
   {
     return -1.0;
   }
-  bvec4 in_ = at.Inside;
-  vec2 bracket = in_.y != in_.x ? vec2(0.0, at.Turn.x) : in_.z != in_.x ? at.Turn : vec2(at.Turn.y, 1.0);
-  bool none = in_.y == in_.x && in_.z == in_.x && in_.w == in_.x;
-  return none ? -1.0 : RefineRoot(b, bracket.x, bracket.y, in_.x);
+  bvec4 inside = at.Inside;
+  vec2 bracket = inside.y != inside.x ? vec2(0.0, at.Turn.x)
+    : inside.z != inside.x                      ? at.Turn
+                                                : vec2(at.Turn.y, 1.0);
+  bool none = inside.y == inside.x && inside.z == inside.x && inside.w == inside.x;
+  return none ? -1.0 : RefineRoot(b, bracket.x, bracket.y, inside.x);
 }
 
 #ifdef MANY_CROSSINGS
-// The s on each of the pieces, likewise; negative where there is none.
+// The s on each of the three pieces; negative if there is none.
 vec3 Transitions(vec4 b)
 {
   vec3 s = vec3(-1.0);
   Pieces at;
   if (FindPieces(b, at))
   {
-    bvec4 in_ = at.Inside;
-    s.x = in_.y != in_.x ? RefineRoot(b, 0.0, at.Turn.x, in_.x) : -1.0;
-    s.y = in_.z != in_.y ? RefineRoot(b, at.Turn.x, at.Turn.y, in_.y) : -1.0;
-    s.z = in_.w != in_.z ? RefineRoot(b, at.Turn.y, 1.0, in_.z) : -1.0;
+    bvec4 inside = at.Inside;
+    s.x = inside.y != inside.x ? RefineRoot(b, 0.0, at.Turn.x, inside.x) : -1.0;
+    s.y = inside.z != inside.y ? RefineRoot(b, at.Turn.x, at.Turn.y, inside.y) : -1.0;
+    s.z = inside.w != inside.z ? RefineRoot(b, at.Turn.y, 1.0, inside.z) : -1.0;
   }
   return s;
 }
 #endif
 
-// Are there corners on both sides?
-bool Straddle(Corners w)
+// Tells whether the surface crosses the cell: some corners are inside, others are not.
+bool StraddlesZero(Corners w)
 {
   bvec4 low = greaterThanEqual(w.Low, vec4(0.0));
   bvec4 high = greaterThanEqual(w.High, vec4(0.0));

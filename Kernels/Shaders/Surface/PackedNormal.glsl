@@ -1,4 +1,5 @@
-// Unit vectors in 2 x 16 bits, on an octahedron unfolded to a square; off by at most 6.5e-5 (Cigolle et al. 2014).
+// Packs unit vectors into 2 x 16 bits: places on an octahedron that is unfolded to a square (Cigolle
+// et al. 2014). They are off by at most 6.5e-5.
 
 vec2 SignNotZero(vec2 v)
 {
