@@ -61,27 +61,9 @@ def test_reader_against_the_tool(tmp_path, header, rate, lacking):
         lacking("the zfp command line tool is not installed (Debian: zfp)")
     values = noise((6, 9, 7), 7)
     values.tofile(tmp_path / "raw")
-    options = ["-h"] if header else []
+    options = [*(["-h"] if header else []), *"-f -3 7 9 6 -r".split(), str(rate)]
     path = tmp_path / "volume.zfp"
-    subprocess.run(
-        [
-            "zfp",
-            "-q",
-            *options,
-            "-f",
-            "-3",
-            "7",
-            "9",
-            "6",
-            "-r",
-            str(rate),
-            "-i",
-            tmp_path / "raw",
-            "-z",
-            path,
-        ],
-        check=True,
-    )
+    subprocess.run(["zfp", "-q", *options, "-i", tmp_path / "raw", "-z", path], check=True)
     reader = vtkZFPReader()
     reader.SetFileName(str(path))
     if not header:

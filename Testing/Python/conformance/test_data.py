@@ -45,21 +45,10 @@ def test_cell_data(surfaces):
     check_scene_like_vtk(build)
 
 
-@pytest.mark.parametrize(
-    "kind",
-    [
-        "uint8",
-        "int8",
-        "uint16",
-        "int16",
-        "uint32",
-        "int32",
-        "uint64",
-        "int64",
-        "float32",
-        "float64",
-    ],
-)
+TYPES = "uint8 int8 uint16 int16 uint32 int32 uint64 int64 float32 float64".split()
+
+
+@pytest.mark.parametrize("kind", TYPES)
 def test_data_types(kind):
     values = (60 + 50 * np.clip(blobs(SHAPE, 12, waves=2), -1, 1)).astype(kind)
     compressed = progiso.compress(make_image(values), rate=16)

@@ -2,19 +2,10 @@
 
 import ctypes
 
-KINDS = [
-    "Buffer",
-    "Texture",
-    "Program",
-    "Shader",
-    "Query",
-    "Framebuffer",
-    "Renderbuffer",
-    "VertexArray",
-]
+KINDS = "Buffer Texture Program Shader Query Framebuffer Renderbuffer VertexArray".split()
 
 
-def objects(window):
+def count_objects(window):
     """Count OpenGL's objects of each kind, by asking for every name."""
     window.MakeCurrent()
     names = {"vtkOSOpenGLRenderWindow": "libOSMesa.so.8", "vtkEGLRenderWindow": "libOpenGL.so.0"}

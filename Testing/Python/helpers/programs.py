@@ -41,16 +41,8 @@ def call_progiso(folder, *arguments, succeeds=True):
 
 def compress_command(source, target, rate=1):
     """Return the command that compresses a file."""
-    return [
-        sys.executable,
-        "-m",
-        "progiso",
-        "compress",
-        str(source),
-        str(target),
-        "--rate",
-        str(rate),
-    ]
+    files = [str(source), str(target)]
+    return [sys.executable, "-m", "progiso", "compress", *files, "--rate", str(rate)]
 
 
 def under_x(*command, python_path=(), timeout=600, cwd=None, **variables):

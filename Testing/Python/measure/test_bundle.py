@@ -75,17 +75,9 @@ def test_the_callers_window_stays(bundle):
     [(["--with", "no-such-file"], "no-such-file"), ([], "run without --package-only once")],
 )
 def test_packer_says_what_is_wrong(tmp_path, arguments, words):
+    packer = [sys.executable, BENCHMARKS / "pack-bundle"]
     done = subprocess.run(
-        [
-            sys.executable,
-            BENCHMARKS / "pack-bundle",
-            "--package-only",
-            "--out",
-            tmp_path,
-            *arguments,
-        ],
-        capture_output=True,
-        text=True,
+        [*packer, "--package-only", "--out", tmp_path, *arguments], capture_output=True, text=True
     )
     assert done.returncode == 1 and not done.stdout
     assert len(done.stderr.splitlines()) == 1 and words in done.stderr

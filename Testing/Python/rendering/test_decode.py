@@ -13,6 +13,10 @@ EXTREMES = np.array(
     np.float32,
 )
 
+#: Bits a block, most of them no whole number of bytes.
+BITS = [9, 10, 11, 12, 15, 17, 31, 32, 33, 50, 63, 65, 77, 100, 127, 129, 257, 333, 511, 513, 1001]
+BITS += [1999, 2047]
+
 
 @pytest.fixture(scope="module")
 def window():
@@ -30,34 +34,7 @@ def test_all_rates(window, rate):
     check_decoding(window, of(marschner_lobb(14), rate))
 
 
-@pytest.mark.parametrize(
-    "bits",
-    [
-        9,
-        10,
-        11,
-        12,
-        15,
-        17,
-        31,
-        32,
-        33,
-        50,
-        63,
-        65,
-        77,
-        100,
-        127,
-        129,
-        257,
-        333,
-        511,
-        513,
-        1001,
-        1999,
-        2047,
-    ],
-)
+@pytest.mark.parametrize("bits", BITS)
 def test_any_bits_per_block(window, bits):
     """Blocks may start and end anywhere within a word."""
     image = of(noise((9, 10, 11), bits), bits / 64)

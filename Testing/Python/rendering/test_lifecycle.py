@@ -8,7 +8,7 @@ from vtkmodules.vtkRenderingCore import vtkLight, vtkRenderWindow, vtkVolume
 import progiso
 from helpers.comparison import GREEN, NESTED, OPAQUE, RED, ComparisonScene, paint, picture_of, show
 from helpers.geometry import TURNED, ball, planes
-from helpers.gl_objects import objects
+from helpers.gl_objects import count_objects
 from helpers.images import blobs, make_image
 from helpers.messages import vtk_messages
 from helpers.scenes import CACHED
@@ -110,14 +110,14 @@ def test_nothing_is_left_behind(image, settings):
         volume.GetProperty().ShadeOn()
         scene.render()
         if cycle == 2:
-            within = objects(scene.window)
+            within = count_objects(scene.window)
         scene.renderer.RemoveVolume(volume)
         volume.ReleaseGraphicsResources(scene.window)
         scene.volumes.clear()
         del volume
         if cycle == 2:
-            first = objects(scene.window)
-    assert objects(scene.window) == first
+            first = count_objects(scene.window)
+    assert count_objects(scene.window) == first
     assert within["Buffer"] > first["Buffer"] and within["Program"] > first["Program"]
 
 
@@ -154,10 +154,10 @@ def test_released_while_another_window_is_current(image):
         show(scene, image, NESTED)
     pictures = [scene.picture() for scene in scenes]
     assert np.array_equal(*pictures)
-    before = objects(scenes[1].window)
+    before = count_objects(scenes[1].window)
     scenes[0].renderer.RemoveVolume(scenes[0].volumes[0])
     scenes[0].volumes.clear()
-    assert objects(scenes[1].window) == before
+    assert count_objects(scenes[1].window) == before
     assert np.array_equal(scenes[1].picture(), pictures[1])
     assert np.ptp(scenes[0].picture().reshape(-1, 3), axis=0).max() == 0
 

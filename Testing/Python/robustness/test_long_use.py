@@ -11,7 +11,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
 import progiso
 from helpers.comparison import BLUE, GREEN, NESTED, OPAQUE, RED, ComparisonScene, show
-from helpers.gl_objects import objects
+from helpers.gl_objects import count_objects
 from helpers.images import blobs, make_image
 from helpers.programs import under_x
 from helpers.scenes import CACHED
@@ -32,7 +32,7 @@ def test_mappers_come_and_go(image):
     scene = ComparisonScene(ours=True, size=(64, 48))
     scene.look_at(image)
     scene.render()
-    before = objects(scene.window)
+    before = count_objects(scene.window)
     keeper = scene.add(image, OPAQUE)
     scene.render()
     scene.volumes.clear()
@@ -57,15 +57,15 @@ def test_mappers_come_and_go(image):
             samples["frame"].append(number)
             samples["rss"].append(resident_bytes())
             if number < MAPPERS / 4:
-                counted = objects(
+                counted = count_objects(
                     scene.window
                 )  # by then all shaders are compiled, which the keeper holds
-    assert objects(scene.window) == counted
+    assert count_objects(scene.window) == counted
     assert growth(samples, "rss", MAPPERS // 4) <= tolerances.GROWTH_BYTES
     scene.renderer.RemoveVolume(keeper)
     del keeper
     gc.collect()
-    after = objects(scene.window)
+    after = count_objects(scene.window)
     assert after["Program"] < counted["Program"] <= before["Program"] + 60
     for kind in ("Buffer", "Texture", "Query", "Framebuffer", "Renderbuffer", "VertexArray"):
         assert after[kind] == before[kind], kind
@@ -89,7 +89,7 @@ def test_fifty_volumes(image):
         scene.add(small, {0.1: (*color, 1.0)}, matrix)
         if len(scene.volumes) in (1, VOLUMES):
             picture = scene.picture()
-            counts.append(objects(scene.window))
+            counts.append(count_objects(scene.window))
     first, all_ = counts
     assert all_["Program"] == first["Program"], "each has its own shaders"
     assert all_["Buffer"] - first["Buffer"] <= (VOLUMES - 1) * first["Buffer"]
@@ -155,7 +155,7 @@ from helpers.scenes import CACHED
 from helpers.comparison import ComparisonScene
 from helpers.images import blobs, make_image
 from helpers.comparison import NESTED, OPAQUE, show
-from helpers.gl_objects import objects
+from helpers.gl_objects import count_objects
 
 image = progiso.compress(make_image(blobs((48, 56, 52), 12, waves=3)), rate=8)
 scenes = [ComparisonScene(ours=True), ComparisonScene(ours=True)]
@@ -163,7 +163,7 @@ scenes[1].window.SetSharedRenderWindow(scenes[0].window)
 for scene, surfaces in zip(scenes, (OPAQUE, NESTED)):
     show(scene, image, surfaces, **CACHED).GetProperty().ShadeOn()
 pictures = [scene.picture() for scene in scenes]
-names = [objects(scene.window)["Buffer"] for scene in scenes]
+names = [count_objects(scene.window)["Buffer"] for scene in scenes]
 assert names[0] == names[1] > 20, "they share nothing"
 
 

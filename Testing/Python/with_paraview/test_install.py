@@ -50,16 +50,8 @@ def test_find_package(prefix, build, tmp_path):
     }
     settings["ProgIso_DIR"] = prefix / "lib/cmake/ProgIso"
     source, made = REPOSITORY / "Testing/Cxx/Example", tmp_path / "example"
-    run(
-        "cmake",
-        "-S",
-        source,
-        "-B",
-        made,
-        "-G",
-        "Ninja",
-        *(f"-D{name}={value}" for name, value in settings.items()),
-    )
+    options = [f"-D{name}={value}" for name, value in settings.items()]
+    run("cmake", "-S", source, "-B", made, "-G", "Ninja", *options)
     run("cmake", "--build", made)
     under_x(made / "isosurface", tmp_path / "example.png")
     assert (tmp_path / "example.png").stat().st_size > 2000

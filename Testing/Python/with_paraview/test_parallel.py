@@ -12,28 +12,13 @@ from progiso.measure import tolerances
 
 pytestmark = pytest.mark.paraview
 
-CASES = ["plain", "compressed", "decompressed", "cells", "cells-compressed"]
-CASES += [
-    "file-compressed",
-    "file-plain",
-    "file-zfp",
-    "pieces",
-    "several",
-    "translucent",
-    "contour",
-]
+CASES = "plain compressed decompressed cells cells-compressed".split()
+CASES += "file-compressed file-plain file-zfp pieces several translucent contour".split()
 CASES += ["among-meshes", "translucent-among-meshes"]
 
 #: Open MPI in a container; processes that share few cores should each take one.
-MPI = {
-    name: "1"
-    for name in (
-        "OMPI_ALLOW_RUN_AS_ROOT",
-        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM",
-        "OMP_NUM_THREADS",
-        "LP_NUM_THREADS",
-    )
-}
+MPI = dict.fromkeys(("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"), "1")
+MPI |= dict.fromkeys(("OMP_NUM_THREADS", "LP_NUM_THREADS"), "1")
 
 
 def mpiexec(processes, *command):
@@ -55,11 +40,7 @@ def shown(build, tmp_path_factory):
     found, areas = {}, []
     for processes in (1, 2, 4):
         output = mpiexec(
-            processes,
-            "pvbatch",
-            SCRIPTS / "parallel.py",
-            build,
-            folder / str(processes),
+            processes, "pvbatch", SCRIPTS / "parallel.py", build, folder / str(processes)
         )
         assert not any(word in output for word in WARNINGS), output[-6000:]
         (report,) = [json.loads(line) for line in output.splitlines() if line.startswith("{")]

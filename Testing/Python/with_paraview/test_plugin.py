@@ -19,23 +19,11 @@ def run(name, build, folder):
     return json.loads(found)
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "show_plain",
-        "show_compressed",
-        "opaque",
-        "zfp_files",
-        "interactive",
-        "errors",
-        "cell_data",
-        "panel",
-        "trace",
-        "contour",
-        "color_by",
-        "hidden",
-    ],
-)
+NAMES = "show_plain show_compressed opaque zfp_files interactive errors".split()
+NAMES += "cell_data panel trace contour color_by hidden".split()
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_script(name, build, tmp_path):
     run(name, build, tmp_path)
 

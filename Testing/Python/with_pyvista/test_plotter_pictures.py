@@ -145,16 +145,8 @@ def test_passes_show_on_screen(lacking, tmp_path):
         lacking("needs xvfb-run")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     environment.pop("VTK_DEFAULT_OPENGL_WINDOW", None)
-    command = [
-        "xvfb-run",
-        "-n",
-        str(os.getpid()),
-        "-s",
-        "-screen 0 640x480x24",
-        sys.executable,
-        "-c",
-        ON_SCREEN,
-    ]
+    display = ["xvfb-run", "-n", str(os.getpid()), "-s", "-screen 0 640x480x24"]
+    command = [*display, sys.executable, "-c", ON_SCREEN]
     shown = subprocess.run(
         command, env=environment, capture_output=True, text=True, timeout=120, cwd=tmp_path
     )
