@@ -194,7 +194,6 @@ public:
   std::pair<vtkRenderer*, int> View;      // renderer and eye of the last render
   int ViewSize[2] = { 0, 0 };             // of its viewport
   int RendersOfView = AloneAgain;         // since another view was rendered
-  bool CacheToEmpty = false;              // at the next render, when the context is current
   double TotalMilliseconds = 0.0;
 
   vtkWeakPointer<vtkRenderWindowInteractor> Interactor;
@@ -268,7 +267,7 @@ bool vtkProgressiveIsosurfaceMapper::Internals::Report(const std::string& proble
 // What failed may have left anything behind: the next render begins with nothing.
 bool vtkProgressiveIsosurfaceMapper::Internals::ReportPipeline()
 {
-  const std::string problem = this->Pipeline.GetError();
+  const std::string problem = this->Pipeline.GetStatus().GetMessage();
   this->ReleaseGraphics(this->Window);
   return this->Report(problem);
 }
@@ -525,17 +524,11 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(
   settings.SpeculationLimit = this->Owner->SpeculationLimit;
   settings.DecodeWholeVolume = this->Owner->DecodeWholeVolume;
   settings.Detailed = this->Owner->DetailedStatistics;
-  this->Pipeline.SetSettings(settings);
-  if (this->CacheToEmpty)
-  {
-    this->Pipeline.EmptyCache();
-    this->CacheToEmpty = false;
-  }
-  if (!this->Pipeline.SetScene(scene, !sameHits))
+  if (!this->Pipeline.SetScene(scene, settings, !sameHits))
   {
     return this->ReportPipeline();
   }
-  if (!sameHits || !this->Pipeline.IsStarted())
+  if (!this->Pipeline.IsStarted())
   {
     const Clock::time_point start = Clock::now();
     this->Pipeline.Start();
@@ -582,7 +575,7 @@ bool vtkProgressiveIsosurfaceMapper::Internals::Refine(vtkOpenGLRenderWindow* wi
   {
     this->Composite(window);
   }
-  if (!this->Pipeline.GetError().empty())
+  if (!this->Pipeline.GetStatus())
   {
     return this->ReportPipeline();
   }
@@ -607,7 +600,7 @@ bool vtkProgressiveIsosurfaceMapper::Internals::Complete()
   {
     this->Pipeline.RunPasses(0, false, []() { return false; });
   }
-  return this->Pipeline.GetError().empty() || this->ReportPipeline();
+  return this->Pipeline.GetStatus() || this->ReportPipeline();
 }
 
 // A selector has props and cells drawn as colours, pass by pass.
@@ -699,40 +692,28 @@ void vtkProgressiveIsosurfaceMapper::Internals::FillStatistics()
         ->SetValue(static_cast<vtkIdType>(i), row[column]);
     }
   }
-  Device& resources = this->Pipeline.GetResources();
-  statistics->Buffers.clear();
-  for (const BufferInfo& info : PipelineBuffers())
-  {
-    if (resources.GetBytes(info.Id) > 0)
-    {
-      statistics->Buffers.emplace_back(info.Name, resources.GetBytes(info.Id));
-    }
-  }
-  statistics->Buffers.emplace_back("scene", Device::GetUniformBytes());
-  if (resources.GetPaletteBytes() > 0)
-  {
-    statistics->Buffers.emplace_back("palette", resources.GetPaletteBytes());
-  }
-  statistics->Buffers.emplace_back("staging", resources.GetStagingBytes());
+  const auto memory = this->Pipeline.GetMemoryUse();
+  statistics->Buffers.assign(memory.begin(), memory.end());
   statistics->Stages.clear();
   statistics->StagesLeftOut.clear();
-  std::map<Stage, double> milliseconds = resources.GetStageMilliseconds();
+  const std::map<Stage, double>& milliseconds = this->Pipeline.GetStages();
   for (const StageInfo& info : PipelineStages())
   {
-    if (resources.GetStagesRun().count(info.Id) > 0)
+    const auto found = milliseconds.find(info.Id);
+    if (found != milliseconds.end())
     {
-      statistics->Stages.emplace_back(info.Name, milliseconds[info.Id]);
+      statistics->Stages.emplace_back(info.Name, found->second);
     }
     else
     {
       statistics->StagesLeftOut.emplace_back(info.Name);
     }
   }
-  statistics->MemoryBudget = this->Pipeline.GetMemoryBudget();
-  statistics->LeastMemoryBudget = this->Pipeline.GetLeastMemoryBudget();
+  statistics->MemoryBudget = this->Pipeline.GetMemoryPlan().Budget;
+  statistics->LeastMemoryBudget = this->Pipeline.GetMemoryPlan().LeastBudget;
   statistics->TotalMilliseconds = this->TotalMilliseconds;
   statistics->Converged = this->Pipeline.GetConverged();
-  statistics->GLDescription = Device::GetDescription();
+  statistics->GLDescription = ::Context::GetDescription();
   statistics->Modified();
 }
 
@@ -820,7 +801,7 @@ vtkProgressiveIsosurfaceStatistics* vtkProgressiveIsosurfaceMapper::GetStatistic
 
 int vtkProgressiveIsosurfaceMapper::GetNumberOfGLErrors()
 {
-  return this->Impl->Pipeline.GetResources().GetNumberOfGLErrors();
+  return this->Impl->Pipeline.GetNumberOfGLErrors();
 }
 
 void vtkProgressiveIsosurfaceMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
@@ -890,7 +871,7 @@ void vtkProgressiveIsosurfaceMapper::ReleaseGraphicsResources(vtkWindow* window)
 
 void vtkProgressiveIsosurfaceMapper::EmptyCache()
 {
-  this->Impl->CacheToEmpty = true;
+  this->Impl->Pipeline.EmptyCache();
 }
 
 // vtkCellPicker and its like would read from a null pointer otherwise.
@@ -958,7 +939,8 @@ bool vtkProgressiveIsosurfaceMapper::GetHit(int x, int y, double position[3], do
   x = static_cast<int>((x + 0.5) * view.ImageSize[0] / size[0]);
   y = static_cast<int>((y + 0.5) * view.ImageSize[1] / size[1]);
   impl->Window->MakeCurrent();
-  const PixelHit hit = impl->Pipeline.ReadHit(static_cast<std::int64_t>(y) * view.ImageSize[0] + x);
+  const PixelHit hit =
+    impl->Pipeline.GetHits().Read(static_cast<std::int64_t>(y) * view.ImageSize[0] + x);
   if (hit.Key == PixelHit().Key)
   {
     return false;
@@ -982,10 +964,10 @@ bool vtkProgressiveIsosurfaceMapper::GetDepthImage(vtkImageData* image)
   }
   this->Impl->Window->MakeCurrent();
   const glsl::View& view = this->Impl->Scene.View;
-  const std::vector<std::uint32_t> keys = this->Impl->Pipeline.ReadHitKeys();
+  const std::vector<std::uint32_t> keys = this->Impl->Pipeline.GetHits().ReadKeys();
   const bool translucent = this->Impl->Scene.Translucent; // the keys are those of the last hits
   const std::vector<float> first =
-    translucent ? this->Impl->Pipeline.ReadHitDepths() : std::vector<float>();
+    translucent ? this->Impl->Pipeline.GetHits().ReadDepths() : std::vector<float>();
   vtkNew<vtkFloatArray> depths;
   depths->SetName("Depth");
   depths->SetNumberOfValues(static_cast<vtkIdType>(keys.size()));
@@ -1023,18 +1005,17 @@ bool vtkProgressiveIsosurfaceMapper::DecodeOnGPU(
   glWindow->GetShaderCache()->ReleaseCurrentShader();
   ProgressivePipeline pipeline;
   std::vector<float> values;
-  bool good = pipeline.Initialize(ContextOf(glWindow));
-  if (good)
+  Status status = pipeline.Initialize(ContextOf(glWindow));
+  if (status)
   {
     pipeline.SetVolume(DescribeVolume(source));
-    good = pipeline.DecodeVolume(values);
+    status = pipeline.DecodeVolume(values);
   }
-  const std::string error = pipeline.GetError();
   pipeline.Release();
   glUseProgram(0);
-  if (good)
+  if (status)
   {
     CopyBlocks(values, source, samples);
   }
-  return good || this->Impl->Report(error);
+  return status || this->Impl->Report(status.GetMessage());
 }

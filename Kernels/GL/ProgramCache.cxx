@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "GL/ProgramCache.h"
 
+#include "Status.h"
+
+#include <cstdlib>
 #include <iterator>
 #include <mutex>
 
@@ -29,14 +32,23 @@ std::string AttachShader(GLuint program, GLenum type, const AssembledShader& sou
   glDeleteShader(shader);
   return log;
 }
+
+void GLAPIENTRY CountError(
+  GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLchar*, const void* counter)
+{
+  if (type == GL_DEBUG_TYPE_ERROR)
+  {
+    ++*static_cast<int*>(const_cast<void*>(counter));
+  }
+}
 }
 
-std::shared_ptr<ProgramCache> ProgramCache::OfContext(std::uint64_t context, bool byExtensions)
+std::shared_ptr<ProgramCache> ProgramCache::OfContext(std::uint64_t contextId, bool byExtensions)
 {
   static std::map<std::uint64_t, std::weak_ptr<ProgramCache>> contexts;
   static std::mutex mutex; // windows may be rendered by threads of their own
   const std::lock_guard<std::mutex> lock(mutex);
-  std::shared_ptr<ProgramCache> programs = contexts[context].lock();
+  std::shared_ptr<ProgramCache> programs = contexts[contextId].lock();
   if (!programs)
   {
     for (auto entry = contexts.begin(); entry != contexts.end();) // of contexts that are gone
@@ -44,33 +56,34 @@ std::shared_ptr<ProgramCache> ProgramCache::OfContext(std::uint64_t context, boo
       entry = entry->second.expired() ? contexts.erase(entry) : std::next(entry);
     }
     programs = std::make_shared<ProgramCache>(byExtensions);
-    contexts[context] = programs;
+    contexts[contextId] = programs;
   }
   return programs;
 }
 
-GLuint ProgramCache::Get(
-  Stage stage, const std::vector<Buffer>& bound, const PipelineExtent& extent, std::string& error)
+Status ProgramCache::Get(
+  Stage stage, const std::vector<Buffer>& bound, const PipelineExtent& extent, GLuint& program)
 {
   const Variant variant(stage, bound, extent.GetFeatures());
   const auto found = this->Programs.find(variant);
   if (found != this->Programs.end())
   {
-    return found->second;
+    program = found->second;
+    return Status();
   }
-  const GLuint program = this->Build(stage, bound, extent, error);
-  if (program) // else it is tried again, and told again, at the next render
+  const Status built = this->Build(stage, bound, extent, program);
+  if (built) // else the next render tries, and fails, again
   {
     this->Programs[variant] = program;
   }
-  return program;
+  return built;
 }
 
-GLuint ProgramCache::Build(Stage stage, const std::vector<Buffer>& bound,
-  const PipelineExtent& extent, std::string& error) const
+Status ProgramCache::Build(Stage stage, const std::vector<Buffer>& bound,
+  const PipelineExtent& extent, GLuint& program) const
 {
   const StageInfo& info = InfoOf(stage);
-  const GLuint program = glCreateProgram();
+  program = glCreateProgram();
   const auto attach = [&](GLenum type, const std::string& file)
   {
     return AttachShader(
@@ -84,13 +97,25 @@ GLuint ProgramCache::Build(Stage stage, const std::vector<Buffer>& bound,
   glGetProgramiv(program, GL_LINK_STATUS, &linked);
   if (linked)
   {
-    return program;
+    return Status();
   }
   char text[2048] = {};
   glGetProgramInfoLog(program, sizeof(text), nullptr, text);
-  error = std::string("shader ") + info.Name + " does not build on this driver: " + log + text;
   glDeleteProgram(program);
-  return 0;
+  program = 0;
+  return Status::Error("shader ", info.Name, " does not build on this driver: ", log, text);
+}
+
+void ProgramCache::CountGLErrors()
+{
+  const char* debug = std::getenv("PROGISO_GL_DEBUG");
+  this->CountsErrors = this->CountsErrors || (debug && *debug && *debug != '0');
+  if (this->CountsErrors)
+  {
+    glEnable(GL_DEBUG_OUTPUT);
+    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    glDebugMessageCallback(CountError, &this->GLErrors);
+  }
 }
 
 void ProgramCache::Release()
@@ -100,4 +125,8 @@ void ProgramCache::Release()
     glDeleteProgram(entry.second);
   }
   this->Programs.clear();
+  if (this->CountsErrors)
+  {
+    glDebugMessageCallback(nullptr, nullptr); // this object holds the counter
+  }
 }

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
-// The compiled stages, and the count of OpenGL's errors. All mappers of a window share them: a
-// program is compiled when the first scene needs it, once.
-#ifndef PipelinePrograms_h
-#define PipelinePrograms_h
+// The compiled stages of an OpenGL context, and the count of its errors. All mappers of a window
+// share them: a program is compiled once, when the first scene needs it.
+#ifndef ProgramCache_h
+#define ProgramCache_h
 
 #include "GL/ProgIsoGL.h"
 #include "Shaders/ShaderAssembler.h"
@@ -11,16 +11,17 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <string>
 #include <tuple>
 #include <vector>
+
+class Status;
 
 class ProgramCache
 {
 public:
-  /// The programs of a context, which is told by a number of its own. The caller keeps them alive;
-  /// whoever holds them last calls Release() with the context current.
-  static std::shared_ptr<ProgramCache> OfContext(std::uint64_t context, bool byExtensions);
+  /// The programs of the current context, which `contextId` identifies. The caller keeps them
+  /// alive; the last owner must call Release() with the context current.
+  static std::shared_ptr<ProgramCache> OfContext(std::uint64_t contextId, bool byExtensions);
 
   explicit ProgramCache(bool byExtensions)
     : ByExtensions(byExtensions)
@@ -29,22 +30,26 @@ public:
   ProgramCache(const ProgramCache&) = delete;
   void operator=(const ProgramCache&) = delete;
 
-  /// A stage's program for what it is bound to and what the scene needs; 0 and a message in `error`
-  /// where it does not build.
-  GLuint Get(Stage stage, const std::vector<Buffer>& bound, const PipelineExtent& extent,
-    std::string& error);
+  /// Finds, or builds, a stage's program for the buffers that are bound and what the scene needs.
+  Status Get(
+    Stage stage, const std::vector<Buffer>& bound, const PipelineExtent& extent, GLuint& program);
   void Release();
 
-  int GLErrors = 0; ///< of the context, where they are counted
+  ///@{ OpenGL errors of the context, counted if the environment variable PROGISO_GL_DEBUG is set.
+  void CountGLErrors();
+  int GetNumberOfGLErrors() const { return this->GLErrors; }
+  ///@}
 
 private:
-  GLuint Build(Stage stage, const std::vector<Buffer>& bound, const PipelineExtent& extent,
-    std::string& error) const;
+  Status Build(Stage stage, const std::vector<Buffer>& bound, const PipelineExtent& extent,
+    GLuint& program) const;
 
-  /// stage, buffers bound, and what the scene needs, see PipelineExtent
+  /// Stage, buffers bound, and the features of the scene.
   using Variant = std::tuple<Stage, std::vector<Buffer>, std::uint32_t>;
   std::map<Variant, GLuint> Programs;
   bool ByExtensions; ///< the context is older than 4.3 but offers what we need
+  bool CountsErrors = false;
+  int GLErrors = 0;
 };
 
 #endif

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+// The storage buffers of BufferTable.h on the GPU.
+#ifndef StorageBuffers_h
+#define StorageBuffers_h
+
+#include "GL/ProgIsoGL.h"
+#include "Shaders/BufferTable.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+class Context;
+class Status;
+
+class StorageBuffers
+{
+public:
+  explicit StorageBuffers(Context& context)
+    : Gl(context)
+  {
+  }
+
+  /// Makes the buffers of a lifetime as large as the extent wants them, and frees those that it
+  /// does not want. A buffer that has its size already is kept; the contents of others are
+  /// undefined.
+  Status Allocate(Lifetime lifetime, const PipelineExtent& extent);
+  /// Have all buffers of a lifetime the size that the extent wants?
+  bool Has(Lifetime lifetime, const PipelineExtent& extent) const;
+  /// Frees every buffer that the extent wants in another size, so that the sum of all never exceeds
+  /// what it is going to be.
+  void Trim(const PipelineExtent& extent);
+  void Free(Lifetime lifetime);
+  void FreeAll();
+
+  /// Sets every word of a buffer.
+  void Fill(Buffer buffer, std::uint32_t value);
+  /// Fills a buffer that the stages only read.
+  void Upload(Buffer buffer, const std::vector<std::uint32_t>& words);
+
+  GLuint GetName(Buffer buffer) const { return this->Names[static_cast<int>(buffer)]; }
+  std::int64_t GetBytes(Buffer buffer) const { return this->Bytes[static_cast<int>(buffer)]; }
+
+private:
+  Status Allocate(const BufferInfo& info, std::int64_t bytes);
+  void Free(Buffer buffer);
+
+  Context& Gl;
+  std::array<GLuint, NumberOfBuffers> Names = {};
+  std::array<std::int64_t, NumberOfBuffers> Bytes = {};
+};
+
+/// Makes a storage buffer; an error where it is too large, or the GPU has no room for it. `what` is
+/// its content, for the message. A buffer beyond `largestPlain` bytes is made sparse.
+Status MakeStorageBuffer(
+  Context& context, GLuint& name, std::int64_t bytes, const char* what, std::int64_t largestPlain);
+
+/// NVIDIA backs a sparse buffer with large pages. Random reads of a plain buffer are as fast up to
+/// this size, and then 10 to 400 times slower.
+constexpr std::int64_t LargestPlainBuffer = 1LL << 27;
+
+#endif

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+// Reads what the pixels' rays have met; see Hits.glsl.
+#ifndef HitReadback_h
+#define HitReadback_h
+
+#include "GL/HostTransfer.h"
+#include "Shaders/BufferTable.h"
+#include "Shaders/Glsl.h"
+
+#include <cstdint>
+#include <vector>
+
+/// The hit of a pixel. In a translucent image, the key is that of the last hit.
+struct PixelHit
+{
+  std::uint32_t Key = glsl::NO_HIT;
+  float Depth = 0.0f;        ///< parameter t of the first hit
+  std::uint32_t Surface = 0; ///< first hit's isovalue, among those that show
+};
+
+class HitReadback
+{
+public:
+  HitReadback(HostTransfer& transfer, GLuint hits, const PipelineExtent& extent)
+    : Transfer(transfer)
+    , Hits(hits)
+    , Extent(extent)
+  {
+  }
+
+  ///@{ Of all pixels, rows from the bottom.
+  std::vector<std::uint32_t> ReadKeys();
+  std::vector<float> ReadDepths();
+  ///@}
+  PixelHit Read(std::int64_t pixel);
+
+  /// Where in the buffer the depths of opaque geometry begin, in bytes.
+  static std::int64_t GetObstacleOffset(const PipelineExtent& extent);
+
+private:
+  HostTransfer& Transfer;
+  GLuint Hits;
+  PipelineExtent Extent;
+};
+
+#endif

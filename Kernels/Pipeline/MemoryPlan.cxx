@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Pipeline/MemoryPlan.h"
+
+#include "GL/HostTransfer.h"
+#include "GL/SnapshotQueue.h"
+#include "GL/UniformBuffers.h"
+
+#include <algorithm>
+
+namespace
+{
+constexpr std::int64_t AutomaticCacheBytes = 1LL << 30; // where no budget is set
+constexpr std::int64_t AutomaticDeviceShare = 4;        // likewise: a quarter of the GPU's memory
+
+// Any 64 rays find room for all the blocks and map pages that they need at once.
+constexpr std::int64_t MinimumSlots = 2048;
+constexpr std::int64_t MinimumMapPages = 512;
+constexpr std::int64_t SlotsPerMapPage = 8;
+
+constexpr std::int64_t PaletteBytes = 16 * (1 + glsl::PALETTE_SIZE);
+
+std::int64_t LeastSlots(const PipelineExtent& scene)
+{
+  return std::min(MinimumSlots, scene.Blocks);
+}
+
+std::int64_t ChooseBudget(
+  const DeviceLimits& limits, const PipelineSettings& settings, const PipelineExtent& scene)
+{
+  if (settings.MemoryBudget > 0)
+  {
+    return settings.MemoryBudget;
+  }
+  const std::int64_t most = BytesBesideStream(WithCache(scene, 0)) + AutomaticCacheBytes;
+  return limits.DeviceMemory > 0 ? std::min(most, limits.DeviceMemory / AutomaticDeviceShare)
+                                 : most;
+}
+
+// As many slots as the volume has blocks, one buffer can hold and the budget has room for.
+std::int64_t LimitSlots(
+  const DeviceLimits& limits, std::int64_t budget, const PipelineExtent& scene)
+{
+  std::int64_t low = 0;
+  std::int64_t high = std::min(scene.Blocks, limits.LargestBuffer / BytesPerSlot(scene));
+  while (low < high)
+  {
+    const std::int64_t middle = (low + high + 1) / 2;
+    if (BytesBesideStream(WithCache(scene, middle)) <= budget)
+    {
+      low = middle;
+    }
+    else
+    {
+      high = middle - 1;
+    }
+  }
+  return low >= LeastSlots(scene) ? low : 0;
+}
+}
+
+MemoryPlan PlanMemory(
+  const DeviceLimits& limits, const PipelineSettings& settings, const PipelineExtent& scene)
+{
+  MemoryPlan plan;
+  plan.Budget = ChooseBudget(limits, settings, scene);
+  const PipelineExtent whole = WithWholeVolume(scene);
+  const std::int64_t wholeBytes = BytesBesideStream(whole);
+  const std::int64_t leastCached = BytesBesideStream(WithCache(scene, LeastSlots(scene)));
+  const bool wholeFits =
+    wholeBytes <= plan.Budget && BytesPerSlot(whole) * whole.Slots <= limits.LargestBuffer;
+  plan.Cached = !(settings.DecodeWholeVolume && wholeFits);
+  plan.LeastBudget = settings.DecodeWholeVolume ? std::min(leastCached, wholeBytes) : leastCached;
+  plan.MaximumSlots = LimitSlots(limits, plan.Budget, scene);
+  return plan;
+}
+
+PipelineExtent WithCache(const PipelineExtent& scene, std::int64_t slots)
+{
+  PipelineExtent extent = scene;
+  extent.Cached = true;
+  extent.Slots = slots;
+  extent.Pages = std::min(scene.Macrocells, std::max(MinimumMapPages, slots / SlotsPerMapPage));
+  return extent;
+}
+
+PipelineExtent WithWholeVolume(const PipelineExtent& scene)
+{
+  PipelineExtent extent = scene;
+  extent.Cached = false;
+  extent.Slots = scene.Blocks;
+  extent.Pages = 0;
+  return extent;
+}
+
+std::int64_t BytesBesideStream(const PipelineExtent& extent)
+{
+  std::int64_t bytes = UniformBuffers::GetBlockBytes() + (extent.Colored ? PaletteBytes : 0) +
+    HostTransfer::MaximumStagingBytes + SnapshotQueue::MaximumBytes;
+  for (Lifetime lifetime :
+    { Lifetime::Pipeline, Lifetime::Volume, Lifetime::Image, Lifetime::Cache })
+  {
+    bytes += BytesOf(lifetime, extent);
+  }
+  return bytes;
+}

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+// Decides how the GPU's memory is used, from values alone: it needs no GPU.
+#ifndef MemoryPlan_h
+#define MemoryPlan_h
+
+#include "GL/DeviceLimits.h"
+#include "Pipeline/PipelineSettings.h"
+#include "Shaders/BufferTable.h"
+
+#include <cstdint>
+
+struct MemoryPlan
+{
+  std::int64_t Budget = 0;      ///< bytes in force, beside the compressed stream
+  std::int64_t LeastBudget = 0; ///< bytes that this scene needs at least
+  bool Cached = true;           ///< false: the whole volume is decoded, once
+  /// Blocks that a cache may hold; 0: the budget has no room for the smallest one.
+  std::int64_t MaximumSlots = 0;
+};
+
+/// Chooses the budget, decides between a cache and the decoded volume, and limits the cache.
+/// The scene's slots and map pages do not count.
+MemoryPlan PlanMemory(
+  const DeviceLimits& limits, const PipelineSettings& settings, const PipelineExtent& scene);
+
+///@{ The scene with a cache of so many slots and the map pages that go with them, or with the whole
+/// volume decoded.
+PipelineExtent WithCache(const PipelineExtent& scene, std::int64_t slots);
+PipelineExtent WithWholeVolume(const PipelineExtent& scene);
+///@}
+
+/// Bytes of all GPU memory beside the compressed stream.
+std::int64_t BytesBesideStream(const PipelineExtent& extent);
+
+#endif

@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Pipeline/MemoryPlan.h"
+
+#include "Store/CompressedStream.h"
+
+#include <gtest/gtest.h>
+
+namespace
+{
+constexpr std::int64_t MiB = 1LL << 20;
+constexpr std::int64_t GiB = 1LL << 30;
+
+// A volume of samples^3 in an image of 1280x720, lit.
+PipelineExtent Scene(int samples)
+{
+  const int dimensions[3] = { samples, samples, samples };
+  const VolumeSize size(dimensions);
+  PipelineExtent scene;
+  scene.Blocks = size.GetNumberOfBlocks();
+  scene.Macrocells = size.GetNumberOfMacrocells();
+  scene.Pixels = 1280 * 720;
+  scene.Lit = true;
+  return scene;
+}
+
+DeviceLimits Limits(std::int64_t deviceMemory = 0)
+{
+  DeviceLimits limits;
+  limits.LargestBuffer = 4 * GiB;
+  limits.DeviceMemory = deviceMemory;
+  return limits;
+}
+
+PipelineSettings WithBudget(std::int64_t budget, bool decodeWholeVolume = true)
+{
+  PipelineSettings settings;
+  settings.MemoryBudget = budget;
+  settings.DecodeWholeVolume = decodeWholeVolume;
+  return settings;
+}
+
+std::int64_t BytesWithCache(const PipelineExtent& scene, std::int64_t slots)
+{
+  return BytesBesideStream(WithCache(scene, slots));
+}
+}
+
+TEST(MemoryPlan, BudgetThatIsSetIsInForce)
+{
+  EXPECT_EQ(PlanMemory(Limits(80 * GiB), WithBudget(300 * MiB), Scene(256)).Budget, 300 * MiB);
+}
+
+TEST(MemoryPlan, AutomaticBudgetIsAGibibyteOfBlocksOrAQuarterOfTheGPU)
+{
+  const PipelineExtent scene = Scene(1024);
+  const std::int64_t most = BytesWithCache(scene, 0) + GiB;
+  EXPECT_EQ(PlanMemory(Limits(), WithBudget(0), scene).Budget, most);
+  EXPECT_EQ(PlanMemory(Limits(4 * most), WithBudget(0), scene).Budget, most);
+  EXPECT_EQ(PlanMemory(Limits(4 * most - 4), WithBudget(0), scene).Budget, most - 1);
+  EXPECT_EQ(PlanMemory(Limits(2 * GiB), WithBudget(0), scene).Budget, GiB / 2);
+}
+
+TEST(MemoryPlan, WholeVolumeWhereTheBudgetHasRoom)
+{
+  const PipelineExtent scene = Scene(256);
+  const std::int64_t whole = BytesBesideStream(WithWholeVolume(scene));
+  EXPECT_FALSE(PlanMemory(Limits(), WithBudget(whole), scene).Cached);
+  EXPECT_TRUE(PlanMemory(Limits(), WithBudget(whole - 1), scene).Cached);
+  EXPECT_TRUE(PlanMemory(Limits(), WithBudget(whole, false), scene).Cached);
+}
+
+TEST(MemoryPlan, WholeVolumeMustFitOneBuffer)
+{
+  const PipelineExtent scene = Scene(256);
+  DeviceLimits limits = Limits();
+  limits.LargestBuffer = 256 * scene.Blocks; // 64 floats a block
+  EXPECT_FALSE(PlanMemory(limits, WithBudget(GiB), scene).Cached);
+  --limits.LargestBuffer;
+  const MemoryPlan plan = PlanMemory(limits, WithBudget(GiB), scene);
+  EXPECT_TRUE(plan.Cached);
+  EXPECT_EQ(plan.MaximumSlots, scene.Blocks - 1);
+}
+
+TEST(MemoryPlan, ColorsDoubleASlotAndHiddenCellsAddToIt)
+{
+  PipelineExtent scene = Scene(256);
+  scene.Colored = true;
+  scene.HiddenWords = 4;
+  DeviceLimits limits = Limits();
+  limits.LargestBuffer = (2 * 256 + 16) * 100000;
+  EXPECT_EQ(PlanMemory(limits, WithBudget(GiB), scene).MaximumSlots, 100000);
+}
+
+TEST(MemoryPlan, CacheFillsTheBudget)
+{
+  const PipelineExtent scene = Scene(1024);
+  for (std::int64_t slots : { 2048, 4096, 4097, 100000, 1000000 })
+  {
+    const std::int64_t budget = BytesWithCache(scene, slots);
+    EXPECT_EQ(PlanMemory(Limits(), WithBudget(budget), scene).MaximumSlots, slots);
+    EXPECT_EQ(PlanMemory(Limits(), WithBudget(budget + 255), scene).MaximumSlots, slots);
+  }
+  const std::int64_t budget = BytesWithCache(scene, 100000);
+  EXPECT_EQ(PlanMemory(Limits(), WithBudget(budget - 1), scene).MaximumSlots, 99999);
+}
+
+TEST(MemoryPlan, CacheNeverHasMoreSlotsThanBlocks)
+{
+  const PipelineExtent scene = Scene(64);
+  const MemoryPlan plan = PlanMemory(Limits(), WithBudget(8 * GiB, false), scene);
+  EXPECT_TRUE(plan.Cached);
+  EXPECT_EQ(plan.MaximumSlots, 16 * 16 * 16);
+}
+
+TEST(MemoryPlan, LeastBudgetIsJustEnough)
+{
+  const PipelineExtent scene = Scene(1024);
+  const std::int64_t least = PlanMemory(Limits(), WithBudget(GiB), scene).LeastBudget;
+  EXPECT_EQ(least, BytesWithCache(scene, 2048));
+  EXPECT_EQ(PlanMemory(Limits(), WithBudget(least), scene).MaximumSlots, 2048);
+  const MemoryPlan tooSmall = PlanMemory(Limits(), WithBudget(least - 1), scene);
+  EXPECT_TRUE(tooSmall.Cached);
+  EXPECT_EQ(tooSmall.MaximumSlots, 0);
+  EXPECT_EQ(tooSmall.LeastBudget, least);
+}
+
+TEST(MemoryPlan, LeastBudgetOfASmallVolumeIsThatOfItsBlocks)
+{
+  const PipelineExtent scene = Scene(32); // 512 blocks
+  const std::int64_t whole = BytesBesideStream(WithWholeVolume(scene));
+  const std::int64_t cached = BytesWithCache(scene, 512);
+  ASSERT_LT(whole, cached); // rays of a decoded volume need no buffer
+  EXPECT_EQ(PlanMemory(Limits(), WithBudget(GiB), scene).LeastBudget, whole);
+  EXPECT_FALSE(PlanMemory(Limits(), WithBudget(whole), scene).Cached);
+  EXPECT_EQ(PlanMemory(Limits(), WithBudget(GiB, false), scene).LeastBudget, cached);
+  EXPECT_EQ(PlanMemory(Limits(), WithBudget(cached, false), scene).MaximumSlots, 512);
+  EXPECT_EQ(PlanMemory(Limits(), WithBudget(cached - 1, false), scene).MaximumSlots, 0);
+}
+
+TEST(MemoryPlan, MapPagesFollowTheSlots)
+{
+  const PipelineExtent scene = Scene(1024); // 262144 macrocells
+  EXPECT_EQ(WithCache(scene, 2048).Pages, 512);
+  EXPECT_EQ(WithCache(scene, 4096).Pages, 512);
+  EXPECT_EQ(WithCache(scene, 8192).Pages, 1024);
+  EXPECT_EQ(WithCache(scene, 8 * 300000).Pages, scene.Macrocells);
+  EXPECT_EQ(WithCache(Scene(64), 4096).Pages, 64);
+  EXPECT_EQ(WithWholeVolume(scene).Pages, 0);
+  EXPECT_EQ(WithWholeVolume(scene).Slots, scene.Blocks);
+}
+
+TEST(MemoryPlan, DoesNotDependOnTheCacheAtHand)
+{
+  const PipelineExtent scene = Scene(512);
+  for (const PipelineExtent& now :
+    { WithCache(scene, 16384), WithCache(scene, 500000), WithWholeVolume(scene) })
+  {
+    const MemoryPlan plan = PlanMemory(Limits(), WithBudget(200 * MiB), now);
+    const MemoryPlan expected = PlanMemory(Limits(), WithBudget(200 * MiB), scene);
+    EXPECT_EQ(plan.Cached, expected.Cached);
+    EXPECT_EQ(plan.MaximumSlots, expected.MaximumSlots);
+    EXPECT_EQ(plan.LeastBudget, expected.LeastBudget);
+  }
+}
