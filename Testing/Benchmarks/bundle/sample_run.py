@@ -1,4 +1,4 @@
-"""What a benchmark may do, done once in small: prints the files that this loaded, as JSON.
+"""Does once in small what a benchmark may do, and prints the files that this loaded, as JSON.
 
 `pack-bundle` runs it to find out which of VTK's many libraries have to come along.
 """
@@ -92,7 +92,7 @@ def draw(prop, folder):
 
 
 def use_vtk(image, folder):
-    """What VTK's users have today: its own isosurface mapper, and meshes."""
+    """Draw what VTK's users have today: its own isosurface mapper, and meshes."""
     mapper, isosurface, look = vtkGPUVolumeRayCastMapper(), vtkVolume(), vtkVolumeProperty()
     mapper.SetInputData(image)
     mapper.SetBlendModeToIsoSurface()
@@ -105,12 +105,8 @@ def use_vtk(image, folder):
     for extractor in (vtkFlyingEdges3D(), vtkContourFilter()):
         extractor.SetInputData(image)
         extractor.SetValue(0, 0.0)
-        normals, cells, surface, actor = (
-            vtkPolyDataNormals(),
-            vtkGeometryFilter(),
-            vtkPolyDataMapper(),
-            vtkActor(),
-        )
+        normals, cells = vtkPolyDataNormals(), vtkGeometryFilter()
+        surface, actor = vtkPolyDataMapper(), vtkActor()
         normals.SetInputConnection(extractor.GetOutputPort())
         cells.SetInputConnection(normals.GetOutputPort())
         surface.SetInputConnection(cells.GetOutputPort())
@@ -127,7 +123,7 @@ def use_vtk(image, folder):
 
 
 def use_libraries():
-    """NumPy's parts that load on demand, and the progress bar, which only a terminal sees."""
+    """Use NumPy's parts that load on demand, and the progress bar, which only a terminal sees."""
     np.linalg.svd(np.fft.fft(np.random.default_rng(0).normal(size=(8, 8))))
     from rich.console import Console
     from rich.progress import Progress
@@ -137,7 +133,7 @@ def use_libraries():
 
 
 def loaded_files():
-    """Files of Python modules and of shared libraries in this process."""
+    """Return the files of Python modules and shared libraries in this process."""
     modules = {getattr(m, "__file__", None) for m in list(sys.modules.values())}
     maps = Path("/proc/self/maps").read_text(encoding="utf-8").splitlines()
     return sorted(modules - {None} | {line.split()[-1] for line in maps if ".so" in line})

@@ -166,10 +166,8 @@ class ComparisonScene:
 
     def look_at(self, image, view=1, distance=1.5, angle=50.0, camera=None):
         """Point a camera at an image, from one of the four places of an orbit."""
-        place, camera = (
-            orbit(reference_volume(image), view, 4, angle, distance),
-            camera or self.camera,
-        )
+        place = orbit(reference_volume(image), view, 4, angle, distance)
+        camera = camera or self.camera
         camera.SetPosition(place.position)
         camera.SetFocalPoint(place.focal_point)
         camera.SetViewUp(place.view_up)
