@@ -5,6 +5,23 @@
 #include "Shaders/Glsl.h"
 
 #include <algorithm>
+#include <utility>
+
+namespace
+{
+// Sets the uniform of BlockStore.glsl in the program in use.
+void SetSegment(GLuint program, const glsl::Segment& segment)
+{
+  const std::pair<const char*, GLuint> members[] = { { "segment.FirstBlock", segment.FirstBlock },
+    { "segment.Blocks", segment.Blocks }, { "segment.FirstBit", segment.FirstBit },
+    { "segment.Words", segment.Words }, { "segment.FirstMacrocell", segment.FirstMacrocell },
+    { "segment.Macrocells", segment.Macrocells } };
+  for (const auto& member : members)
+  {
+    glUniform1ui(glGetUniformLocation(program, member.first), member.second);
+  }
+}
+}
 
 Status Device::Initialize(std::uint64_t contextId)
 {
@@ -80,8 +97,7 @@ GLuint Device::Bind(Stage stage, const BoundSegment* segment)
   }
   if (segment)
   {
-    glUniform1uiv(glGetUniformLocation(program, "segment"),
-      static_cast<GLsizei>(segment->Range.size()), segment->Range.data());
+    SetSegment(program, segment->Place);
   }
   return program;
 }

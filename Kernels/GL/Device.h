@@ -19,12 +19,11 @@
 #include <memory>
 #include <vector>
 
-/// A part of a compressed stream as a stage sees it: its buffer, and the uniform `segment` of
-/// BlockStore.glsl.
+/// A part of a compressed stream as a stage sees it.
 struct BoundSegment
 {
   GLuint Buffer;
-  std::array<GLuint, 6> Range;
+  glsl::Segment Place;
 };
 
 class Device

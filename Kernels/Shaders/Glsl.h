@@ -21,6 +21,7 @@ using ivec3 = std::int32_t[3];
 #define INSTANCE(name)
 #include "Shaders/Shared/SceneBlocks.glsl.h"
 #include "Shaders/Light/Palette.glsl.h"
+#include "Shaders/Store/Segment.glsl.h"
 #undef UNIFORM_BLOCK
 #undef INSTANCE
 }

@@ -6,12 +6,16 @@
 
 namespace
 {
-// The uniform of BlockStore.glsl.
 BoundSegment Describe(GLuint buffer, const StreamSegment& segment)
 {
-  return { buffer,
-    { segment.FirstBlock, segment.Blocks, segment.FirstBit, static_cast<GLuint>(segment.Bytes / 4),
-      segment.FirstMacrocell, segment.Macrocells } };
+  BoundSegment bound = { buffer, {} };
+  bound.Place.FirstBlock = segment.FirstBlock;
+  bound.Place.Blocks = segment.Blocks;
+  bound.Place.FirstBit = segment.FirstBit;
+  bound.Place.Words = static_cast<std::uint32_t>(segment.Bytes / 4);
+  bound.Place.FirstMacrocell = segment.FirstMacrocell;
+  bound.Place.Macrocells = segment.Macrocells;
+  return bound;
 }
 }
 

@@ -180,7 +180,7 @@ void StoreRanges(uint macrocell)
 uvec2 MacrocellsOfDispatch()
 {
 #ifdef BUFFER_STREAM
-  return uvec2(segment[4], segment[4] + segment[5]);
+  return uvec2(segment.FirstMacrocell, segment.FirstMacrocell + segment.Macrocells);
 #else
   return uvec2(0u, volume.NumberOfMacrocells);
 #endif

@@ -3,11 +3,13 @@
 // aligned. A stream that is longer than one buffer can be lies in segments of whole layers of
 // macrocells; a dispatch sees one of them.
 
-uniform uint segment[6]; // first block, number of blocks, bit of the first one, words; first macrocell, number of them
+#include "Store/Segment.glsl.h"
+
+uniform Segment segment;
 
 bool InSegment(uint block)
 {
-  return block - segment[0] < segment[1];
+  return block - segment.FirstBlock < segment.Blocks;
 }
 
 uint BlockBits()
@@ -23,8 +25,8 @@ uint BlockBits()
 uvec2 BlockStart(uint block)
 {
   uint high, low, carry;
-  umulExtended(block - segment[0], BlockBits(), high, low);
-  low = uaddCarry(low, segment[2], carry);
+  umulExtended(block - segment.FirstBlock, BlockBits(), high, low);
+  low = uaddCarry(low, segment.FirstBit, carry);
   high += carry;
   return uvec2((high << 27) | (low >> 5), low & 31u);
 }
@@ -32,7 +34,7 @@ uvec2 BlockStart(uint block)
 // A word of the stream; zeros beyond the end.
 uint StreamWord(uint word)
 {
-  return word < segment[3] ? stream[word] : 0u;
+  return word < segment.Words ? stream[word] : 0u;
 }
 
 // A place in a block's bits, with the two words around it.

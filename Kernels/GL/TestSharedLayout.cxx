@@ -1,0 +1,264 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+// Asks OpenGL where every member of the structures of Glsl.h lies in the programs of all stages,
+// and compares with C++. A new member has to be entered in the tables here.
+#include "GL/Context.h"
+#include "GL/ProgIsoGL.h"
+#include "GL/ProgramCache.h"
+#include "Shaders/Glsl.h"
+
+#include <vtkNew.h>
+#include <vtkRenderWindow.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace
+{
+// Where a member lies; of an array of structures, in its first element.
+struct Member
+{
+  std::size_t Offset;
+  std::size_t Stride; // from an element of its array to the next
+  std::size_t Bytes;  // in all elements
+};
+using Members = std::map<std::string, Member>;
+
+// clang-format off
+// In the names of OpenGL, but [] for any element.
+#define MEMBER(block, member) \
+  { #block "." #member, { offsetof(glsl::block, member), 0, sizeof(glsl::block::member) } }
+#define ELEMENTS(block, array, member) \
+  { #block "." #array "[]." #member, \
+    { offsetof(glsl::block, array[0].member), sizeof(glsl::block::array[0]), \
+      sizeof(glsl::block::array[0].member) * std::size(glsl::block().array) } }
+
+const Members BlockMembers = {
+  MEMBER(View, RayOrigin.Base), MEMBER(View, RayOrigin.Padding0),
+  MEMBER(View, RayOrigin.PerX), MEMBER(View, RayOrigin.Padding1),
+  MEMBER(View, RayOrigin.PerY), MEMBER(View, RayOrigin.Padding2),
+  MEMBER(View, RayDirection.Base), MEMBER(View, RayDirection.Padding0),
+  MEMBER(View, RayDirection.PerX), MEMBER(View, RayDirection.Padding1),
+  MEMBER(View, RayDirection.PerY), MEMBER(View, RayDirection.Padding2),
+  MEMBER(View, EyeOrigin.Base), MEMBER(View, EyeOrigin.Padding0),
+  MEMBER(View, EyeOrigin.PerX), MEMBER(View, EyeOrigin.Padding1),
+  MEMBER(View, EyeOrigin.PerY), MEMBER(View, EyeOrigin.Padding2),
+  MEMBER(View, EyeDirection.Base), MEMBER(View, EyeDirection.Padding0),
+  MEMBER(View, EyeDirection.PerX), MEMBER(View, EyeDirection.Padding1),
+  MEMBER(View, EyeDirection.PerY), MEMBER(View, EyeDirection.Padding2),
+  MEMBER(View, NearDistance), MEMBER(View, FarDistance),
+  MEMBER(View, Padding0), MEMBER(View, Padding1),
+  ELEMENTS(View, ClippingPlanes, Normal), ELEMENTS(View, ClippingPlanes, Offset),
+  MEMBER(View, CroppingLow), MEMBER(View, Padding2),
+  MEMBER(View, CroppingHigh), MEMBER(View, Padding3),
+  MEMBER(View, FirstDrawn), MEMBER(View, NumberOfIsovalues),
+  MEMBER(View, LastDrawn), MEMBER(View, NumberOfClippingPlanes),
+  MEMBER(View, ImageSize), MEMBER(View, ImageOrigin), MEMBER(View, DrawnRegions),
+  MEMBER(View, Padding4), MEMBER(View, Padding5), MEMBER(View, Padding6),
+  ELEMENTS(View, Isovalues, High), ELEMENTS(View, Isovalues, Low),
+  ELEMENTS(View, Isovalues, Padding0), ELEMENTS(View, Isovalues, Padding1),
+
+  MEMBER(Look, NormalMatrix),
+  MEMBER(Look, ClipZ), MEMBER(Look, ClipZPerT), MEMBER(Look, ClipW), MEMBER(Look, ClipWPerT),
+  MEMBER(Look, Ambient), MEMBER(Look, Diffuse), MEMBER(Look, Specular),
+  MEMBER(Look, SpecularPower),
+  MEMBER(Look, NumberOfLights), MEMBER(Look, LitSides),
+  MEMBER(Look, Padding0), MEMBER(Look, Padding1),
+  ELEMENTS(Look, Colors, Rgb), ELEMENTS(Look, Colors, Opacity),
+  ELEMENTS(Look, Lights, Position), ELEMENTS(Look, Lights, IsPositional),
+  ELEMENTS(Look, Lights, Diffuse), ELEMENTS(Look, Lights, ConeExponent),
+  ELEMENTS(Look, Lights, ConeAxis), ELEMENTS(Look, Lights, ConeCosine),
+  ELEMENTS(Look, Lights, ConstantAttenuation), ELEMENTS(Look, Lights, LinearAttenuation),
+  ELEMENTS(Look, Lights, QuadraticAttenuation), ELEMENTS(Look, Lights, IsSpot),
+  ELEMENTS(Look, Lights, Specular), ELEMENTS(Look, Lights, Padding0),
+
+  MEMBER(Volume, Samples), MEMBER(Volume, BlockBits),
+  MEMBER(Volume, Blocks), MEMBER(Volume, NumberOfBlocks),
+  MEMBER(Volume, Macrocells), MEMBER(Volume, NumberOfMacrocells),
+  MEMBER(Volume, ColorBlockBits),
+  MEMBER(Volume, Padding0), MEMBER(Volume, Padding1), MEMBER(Volume, Padding2),
+
+  MEMBER(Cache, Slots), MEMBER(Cache, MapPages), MEMBER(Cache, CannotGrow),
+  MEMBER(Cache, SpeculationLimit), MEMBER(Cache, PixelsPerStraggler),
+  MEMBER(Cache, Padding0), MEMBER(Cache, Padding1), MEMBER(Cache, Padding2),
+
+  MEMBER(Palette, Low), MEMBER(Palette, PerUnit),
+  MEMBER(Palette, Padding0), MEMBER(Palette, Padding1),
+  ELEMENTS(Palette, Colors, Rgb), ELEMENTS(Palette, Colors, Padding0),
+};
+// clang-format on
+
+struct Block
+{
+  int Binding;
+  std::size_t Bytes;
+};
+const std::map<std::string, Block> Blocks = { { "View", { VIEW_BINDING, sizeof(glsl::View) } },
+  { "Look", { LOOK_BINDING, sizeof(glsl::Look) } },
+  { "Volume", { VOLUME_BINDING, sizeof(glsl::Volume) } },
+  { "Cache", { CACHE_BINDING, sizeof(glsl::Cache) } },
+  { "Palette", { PALETTE_BINDING, sizeof(glsl::Palette) } } };
+
+// "View.Isovalues[].Low" and 3 from "View.Isovalues[3].Low".
+std::string SplitName(const std::string& name, std::size_t& element)
+{
+  element = 0;
+  const std::size_t open = name.find('[');
+  if (open == std::string::npos)
+  {
+    return name;
+  }
+  element = std::stoul(name.substr(open + 1));
+  return name.substr(0, open + 1) + name.substr(name.find(']', open));
+}
+
+// A scene that needs every member of every structure.
+PipelineExtent EverythingNeeded(bool cached)
+{
+  PipelineExtent extent;
+  extent.Blocks = 64;
+  extent.Macrocells = extent.Pixels = extent.Slots = extent.Pages = extent.HiddenWords = 1;
+  extent.Cached = cached;
+  extent.Lit = extent.Detailed = extent.SeveralIsovalues = true;
+  extent.Translucent = extent.Obstructed = extent.Clipped = extent.Cropped = true;
+  extent.Colored = true;
+  return extent;
+}
+
+class SharedLayout : public testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    this->Window->SetOffScreenRendering(1);
+    this->Window->SetSize(16, 16);
+    this->Window->Render();
+    ASSERT_TRUE(this->Gl.Open()) << this->Gl.GetStatus().GetMessage();
+    this->Programs = std::make_unique<ProgramCache>(this->Gl.UsesExtensions());
+  }
+  void TearDown() override { this->Programs->Release(); }
+
+  // The programs of all stages for a scene.
+  std::map<std::string, GLuint> Build(const PipelineExtent& extent)
+  {
+    std::map<std::string, GLuint> programs;
+    for (const StageInfo& stage : PipelineStages())
+    {
+      std::vector<Buffer> bound;
+      for (const BufferUse& use : stage.Buffers)
+      {
+        if (PipelineBuffers()[static_cast<std::size_t>(use.Id)].IsNeeded(extent))
+        {
+          bound.push_back(use.Id);
+        }
+      }
+      const bool needed = std::any_of(stage.Runs.begin(), stage.Runs.end(),
+        [&](const StageRun& run) { return run.Needed.Holds(extent); });
+      if (needed)
+      {
+        GLuint& program = programs[stage.Name];
+        const Status built = this->Programs->Get(stage.Id, bound, extent, program);
+        EXPECT_TRUE(built) << built.GetMessage();
+      }
+    }
+    return programs;
+  }
+
+  static std::vector<GLint> Ask(
+    GLuint program, GLenum interface, GLuint index, const std::vector<GLenum>& properties)
+  {
+    std::vector<GLint> answers(properties.size());
+    glGetProgramResourceiv(program, interface, index, static_cast<GLsizei>(properties.size()),
+      properties.data(), static_cast<GLsizei>(answers.size()), nullptr, answers.data());
+    return answers;
+  }
+
+  static std::string NameOf(GLuint program, GLenum interface, GLuint index)
+  {
+    char name[256] = {};
+    glGetProgramResourceName(program, interface, index, sizeof(name), nullptr, name);
+    return name;
+  }
+
+  static GLuint CountOf(GLuint program, GLenum interface)
+  {
+    GLint count = 0;
+    glGetProgramInterfaceiv(program, interface, GL_ACTIVE_RESOURCES, &count);
+    return static_cast<GLuint>(count);
+  }
+
+  vtkNew<vtkRenderWindow> Window;
+  Context Gl;
+  std::unique_ptr<ProgramCache> Programs;
+};
+}
+
+TEST_F(SharedLayout, UniformBlocksLieAsInCxx)
+{
+  std::set<std::string> seen;
+  for (const auto& [stage, program] : this->Build(EverythingNeeded(true)))
+  {
+    for (GLuint i = 0; i < CountOf(program, GL_UNIFORM); ++i)
+    {
+      const std::vector<GLint> answers = Ask(program, GL_UNIFORM, i, { GL_BLOCK_INDEX, GL_OFFSET });
+      if (answers[0] < 0)
+      {
+        continue; // of no block
+      }
+      std::size_t element = 0;
+      const std::string whole = NameOf(program, GL_UNIFORM, i);
+      const std::string name = SplitName(whole, element);
+      const auto found = BlockMembers.find(name);
+      ASSERT_NE(found, BlockMembers.end()) << stage << ": enter " << name << " in BlockMembers";
+      EXPECT_EQ(answers[1], found->second.Offset + element * found->second.Stride)
+        << stage << ": " << whole;
+      seen.insert(name);
+    }
+  }
+  for (const auto& [name, member] : BlockMembers)
+  {
+    EXPECT_TRUE(seen.count(name)) << name << " is in no program";
+  }
+}
+
+TEST_F(SharedLayout, UniformBlocksHaveTheSizesAndBindingsOfCxx)
+{
+  std::set<std::string> seen;
+  for (const auto& [stage, program] : this->Build(EverythingNeeded(true)))
+  {
+    for (GLuint i = 0; i < CountOf(program, GL_UNIFORM_BLOCK); ++i)
+    {
+      const std::string name = NameOf(program, GL_UNIFORM_BLOCK, i);
+      const auto found = Blocks.find(name);
+      ASSERT_NE(found, Blocks.end()) << stage << ": enter " << name << " in Blocks";
+      const std::vector<GLint> answers =
+        Ask(program, GL_UNIFORM_BLOCK, i, { GL_BUFFER_BINDING, GL_BUFFER_DATA_SIZE });
+      EXPECT_EQ(answers[0], found->second.Binding) << stage << ": " << name;
+      EXPECT_EQ(answers[1], found->second.Bytes) << stage << ": " << name;
+      seen.insert(name);
+    }
+  }
+  EXPECT_EQ(seen.size(), Blocks.size());
+}
+
+// Blocks are compared and copied byte by byte.
+TEST(SharedStructures, HaveNoGaps)
+{
+  std::map<std::string, std::size_t> bytes;
+  for (const auto& [name, member] : BlockMembers)
+  {
+    bytes[name.substr(0, name.find('.'))] += member.Bytes;
+  }
+  for (const auto& [name, block] : Blocks)
+  {
+    EXPECT_EQ(bytes[name], block.Bytes) << name;
+  }
+}
