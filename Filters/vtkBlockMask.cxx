@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkBlockMask.h"
 
+#include "Codec/BlockGeometry.h"
+
 #include "vtkDataArray.h"
 #include "vtkTypeUInt64Array.h"
 
@@ -9,29 +11,21 @@
 
 namespace
 {
-// In a block's bits: those with x = 0 (y = 0, z = 0), and all others.
-constexpr vtkTypeUInt64 FirstX = 0x1111111111111111;
-constexpr vtkTypeUInt64 FirstY = 0x000F000F000F000F;
-constexpr vtkTypeUInt64 FirstZ = 0x000000000000FFFF;
+// The first samples along each axis in a block's bits: those with x = 0, y = 0, z = 0.
+constexpr vtkTypeUInt64 FirstSamples[3] = { 0x1111111111111111, 0x000F000F000F000F,
+  0x000000000000FFFF };
 
-// Adds to every place what the next one along an axis has; `next` is the next block.
-vtkTypeUInt64 SpreadX(vtkTypeUInt64 bits, vtkTypeUInt64 next)
+//------------------------------------------------------------------------------
+// Adds to each sample's bit that of the next sample along an axis; `next` is the next block.
+vtkTypeUInt64 SpreadBits(vtkTypeUInt64 bits, vtkTypeUInt64 next, int axis)
 {
-  return bits | ((bits & ~FirstX) >> 1) | ((next & FirstX) << 3);
-}
-
-vtkTypeUInt64 SpreadY(vtkTypeUInt64 bits, vtkTypeUInt64 next)
-{
-  return bits | ((bits & ~FirstY) >> 4) | ((next & FirstY) << 12);
-}
-
-vtkTypeUInt64 SpreadZ(vtkTypeUInt64 bits, vtkTypeUInt64 next)
-{
-  return bits | ((bits & ~FirstZ) >> 16) | ((next & FirstZ) << 48);
+  const vtkTypeUInt64 first = FirstSamples[axis];
+  const int stride = BlockStrides[axis];
+  return bits | ((bits & ~first) >> stride) | ((next & first) << (BlockSide - 1) * stride);
 }
 
 //------------------------------------------------------------------------------
-// Walks along a row of blocks without a search for each.
+// Walks along a row of blocks without a search for each block.
 class RowReader
 {
 public:
@@ -44,8 +38,8 @@ public:
   {
   }
 
-  // Blocks from the present one on that have the same bits, at most `limit`.
-  vtkTypeInt64 Length(vtkTypeInt64 limit) const
+  // Counts the blocks from the current one on that have the same bits, up to `limit`.
+  vtkTypeInt64 CountAlike(vtkTypeInt64 limit) const
   {
     return this->Next < this->Runs.size()
       ? std::min<vtkTypeInt64>(limit, this->Runs[this->Next].First - this->Block)
@@ -63,8 +57,60 @@ public:
 
 private:
   const std::vector<vtkBlockMask::Run>& Runs;
-  std::size_t Next; // the first run behind the present block
+  std::size_t Next; // the first run behind the current block
   vtkTypeUInt64 Block;
+};
+
+//------------------------------------------------------------------------------
+// A row of blocks, and the rows that its cells reach into: the next along y, along z, and along
+// both. Rows beyond the volume hide nothing.
+class CellRow
+{
+public:
+  CellRow(const std::vector<vtkBlockMask::Run>& runs, const int blocks[3], int y, int z)
+    : HasNextY(y + 1 < blocks[1])
+    , HasNextZ(z + 1 < blocks[2])
+    , Rows{ { runs, Start(blocks, y, z) }, { runs, Start(blocks, y + this->HasNextY, z) },
+      { runs, Start(blocks, y, z + this->HasNextZ) },
+      { runs, Start(blocks, y + this->HasNextY, z + this->HasNextZ) } }
+  {
+  }
+
+  vtkTypeInt64 CountAlike(vtkTypeInt64 limit) const
+  {
+    for (const RowReader& row : this->Rows)
+    {
+      limit = std::min(limit, row.CountAlike(limit));
+    }
+    return limit;
+  }
+
+  // Skips some blocks that are alike, and returns the cells of each that have a hidden corner. The
+  // bits of cells beyond the volume are undefined.
+  vtkTypeUInt64 TakeCells(vtkTypeInt64 count, bool isLast)
+  {
+    vtkTypeUInt64 spread[4];
+    for (int i = 0; i < 4; ++i)
+    {
+      const vtkTypeUInt64 bits = this->Rows[i].Bits();
+      this->Rows[i].Skip(count);
+      const vtkTypeUInt64 next = count > 1 ? bits : isLast ? 0 : this->Rows[i].Bits();
+      spread[i] = SpreadBits(bits, next, 0);
+    }
+    const vtkTypeUInt64 lower = SpreadBits(spread[0], this->HasNextY ? spread[1] : 0, 1);
+    const vtkTypeUInt64 upper = SpreadBits(spread[2], this->HasNextY ? spread[3] : 0, 1);
+    return SpreadBits(lower, this->HasNextZ ? upper : 0, 2);
+  }
+
+private:
+  static vtkTypeUInt64 Start(const int blocks[3], int y, int z)
+  {
+    return BlockIndex(0, y, z, blocks);
+  }
+
+  bool HasNextY;
+  bool HasNextZ;
+  RowReader Rows[4];
 };
 }
 
@@ -91,9 +137,13 @@ vtkTypeUInt64 vtkBlockMask::Get(vtkTypeInt64 block) const
 //------------------------------------------------------------------------------
 bool vtkBlockMask::Hides(const int position[3], const int blocks[3]) const
 {
-  const vtkTypeInt64 block = position[0] / 4 +
-    blocks[0] * (position[1] / 4 + static_cast<vtkTypeInt64>(blocks[1]) * (position[2] / 4));
-  const int bit = position[0] % 4 + 4 * (position[1] % 4) + 16 * (position[2] % 4);
+  const vtkTypeInt64 block =
+    BlockIndex(position[0] / BlockSide, position[1] / BlockSide, position[2] / BlockSide, blocks);
+  int bit = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    bit += position[axis] % BlockSide * BlockStrides[axis];
+  }
   return (this->Get(block) >> bit & 1) != 0;
 }
 
@@ -105,43 +155,21 @@ vtkBlockMask vtkBlockMask::ToCells(const int blocks[3], const vtkBlockMask& othe
     return other;
   }
   vtkBlockMask cells;
-  const vtkTypeInt64 row = blocks[0], slice = row * blocks[1];
   for (int z = 0; z < blocks[2]; ++z)
   {
     for (int y = 0; y < blocks[1]; ++y)
     {
-      // the row of blocks itself, and those that its cells reach into; beyond the volume there are
-      // no cells, whatever their bits
-      const vtkTypeInt64 first = row * y + slice * z;
-      const vtkTypeInt64 up = y + 1 < blocks[1] ? row : 0, behind = z + 1 < blocks[2] ? slice : 0;
-      RowReader rows[] = { { this->Runs, static_cast<vtkTypeUInt64>(first) },
-        { this->Runs, static_cast<vtkTypeUInt64>(first + up) },
-        { this->Runs, static_cast<vtkTypeUInt64>(first + behind) },
-        { this->Runs, static_cast<vtkTypeUInt64>(first + up + behind) } };
-      RowReader added(other.Runs, first);
-      for (vtkTypeInt64 x = 0; x < row;)
+      CellRow row(this->Runs, blocks, y, z);
+      RowReader added(other.Runs, BlockIndex(0, y, z, blocks));
+      for (vtkTypeInt64 x = 0; x < blocks[0];)
       {
-        // as far as no row changes before the block after it, all blocks are alike
-        vtkTypeInt64 alike = added.Length(row - x);
-        vtkTypeUInt64 own[4], next[4];
-        for (int i = 0; i < 4; ++i)
-        {
-          alike = std::min(alike, rows[i].Length(row - x));
-        }
-        const bool last = x + alike == row;
-        alike = std::max<vtkTypeInt64>(last ? alike : alike - 1, 1);
-        for (int i = 0; i < 4; ++i)
-        {
-          own[i] = rows[i].Bits();
-          rows[i].Skip(alike);
-          next[i] = alike > 1 ? own[i] : last ? 0 : rows[i].Bits();
-          own[i] = SpreadX(own[i], next[i]);
-        }
-        const vtkTypeUInt64 lower = SpreadY(own[0], up > 0 ? own[1] : 0);
-        const vtkTypeUInt64 upper = SpreadY(own[2], up > 0 ? own[3] : 0);
-        cells.Append(SpreadZ(lower, behind > 0 ? upper : 0) | added.Bits(), alike);
-        added.Skip(alike);
-        x += alike;
+        const vtkTypeInt64 alike = row.CountAlike(added.CountAlike(blocks[0] - x));
+        const bool isLast = x + alike == blocks[0];
+        // the last of them differs if the next block does
+        const vtkTypeInt64 count = std::max<vtkTypeInt64>(isLast ? alike : alike - 1, 1);
+        cells.Append(row.TakeCells(count, isLast) | added.Bits(), count);
+        added.Skip(count);
+        x += count;
       }
     }
   }
@@ -156,10 +184,10 @@ vtkBlockMask vtkBlockMask::Crop(const int first[3], const int count[3], const in
   {
     for (vtkTypeInt64 y = first[1]; y < first[1] + count[1]; ++y)
     {
-      RowReader reader(this->Runs, first[0] + blocks[0] * (y + blocks[1] * z));
+      RowReader reader(this->Runs, BlockIndex(first[0], y, z, blocks));
       for (vtkTypeInt64 x = 0; x < count[0];)
       {
-        const vtkTypeInt64 length = reader.Length(count[0] - x);
+        const vtkTypeInt64 length = reader.CountAlike(count[0] - x);
         cropped.Append(reader.Bits(), length);
         reader.Skip(length);
         x += length;

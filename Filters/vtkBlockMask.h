@@ -4,12 +4,12 @@
  * @class   vtkBlockMask
  * @brief   which samples, or cells, of a volume of 4x4x4 blocks are hidden
  *
- * A bit for each of a block's 64 samples, bit x + 4y + 16z, set where it is hidden; or for each of
- * the 64 cells of its dual grid, named by their lowest corners. Blocks follow in x-fastest order,
- * and equal ones are kept as one run: a volume that hides nothing takes nothing, one with a hidden
- * part some bytes for each block at the part's border.
+ * Each block has 64 bits. Bit x + 4y + 16z is set if that sample is hidden, or, in a mask of cells,
+ * the cell whose lowest corner is that sample. Blocks are in x-fastest order. Equal neighbours are
+ * stored as one run of 16 bytes, so that the size of a mask depends on the border of what is
+ * hidden; a mask that hides nothing is empty.
  *
- * Not a vtkObject: it is copied and compared like a number.
+ * Not a vtkObject: a mask is copied and compared by value.
  */
 #ifndef vtkBlockMask_h
 #define vtkBlockMask_h
@@ -28,7 +28,7 @@ class VTKPROGISOFILTERS_EXPORT vtkBlockMask
 {
 public:
   /**
-   * Blocks from First on, up to the next run's, have these bits.
+   * The blocks from First to the beginning of the next run all have these bits.
    */
   struct Run
   {
@@ -48,39 +48,42 @@ public:
   bool IsEmpty() const { return this->Runs.empty(); }
 
   /**
-   * Add the next blocks, `count` of them, all with the same bits.
+   * Adds the next `count` blocks, all with the same bits.
    */
   void Append(vtkTypeUInt64 bits, vtkTypeInt64 count = 1);
 
   /**
-   * A block's bits; 0 beyond the last one.
+   * Returns a block's bits; those of the last run beyond the end, 0 if the mask is empty.
    */
   vtkTypeUInt64 Get(vtkTypeInt64 block) const;
 
   /**
-   * The runs in order; the first begins at block 0. Empty where nothing is hidden.
+   * The runs in order; the first begins at block 0. Empty if nothing is hidden.
    */
   const std::vector<Run>& GetRuns() const { return this->Runs; }
 
   /**
-   * Whether a sample, or cell, of a volume of so many blocks per axis is hidden.
+   * Whether a sample, or cell, at a position in samples is hidden in a volume of so many blocks per
+   * axis.
    */
   bool Hides(const int position[3], const int blocks[3]) const;
 
   /**
-   * Of a mask of samples: the cells that have a hidden corner; `other`, of cells, is added.
+   * Makes of this mask of samples the mask of the cells that have a hidden corner, or that are
+   * hidden in `other`, a mask of cells.
    */
   vtkBlockMask ToCells(const int blocks[3], const vtkBlockMask& other) const;
 
   /**
-   * The mask of `count` blocks per axis, from `first` on, of a volume of `blocks`.
+   * Cuts out the mask of `count` blocks per axis from `first` on. The volume has `blocks` per axis.
    */
   vtkBlockMask Crop(const int first[3], const int count[3], const int blocks[3]) const;
 
   ///@{
   /**
-   * The runs as tuples (first block, bits), and back: FromArray() returns what is wrong with them
-   * for a volume of so many blocks, as the end of a sentence, or nothing.
+   * Converts the runs to tuples (first block, bits), and back. FromArray() checks them for a volume
+   * of so many blocks, and returns an error as the end of a sentence that begins with the array's
+   * name, or an empty string.
    */
   vtkSmartPointer<vtkTypeUInt64Array> ToArray() const;
   std::string FromArray(vtkDataArray* array, vtkTypeInt64 blocks);
@@ -90,7 +93,7 @@ public:
 
 private:
   std::vector<Run> Runs;
-  vtkTypeUInt64 Blocks = 0; ///< appended so far
+  vtkTypeUInt64 Blocks = 0; // appended so far
 };
 
 #endif

@@ -36,7 +36,7 @@ int vtkCompressedVolume::BlockBitsForRate(double rate)
   {
     return 0;
   }
-  // as zfp_stream_set_rate() does
+  // rounds as zfp_stream_set_rate() does
   return std::max(static_cast<int>(std::floor(64.0 * rate + 0.5)), +MinimumBlockBits);
 }
 
@@ -214,7 +214,8 @@ void vtkCompressedVolume::SetArrayName(const std::string& name)
 }
 
 //------------------------------------------------------------------------------
-// The largest doubles, rounded to float32 in the stream's units, may lie beyond what doubles hold.
+// Clamps to finite doubles: the largest ones, rounded to float32 in the stream's units, may
+// overflow.
 void vtkCompressedVolume::SetStoredRange(double low, double high)
 {
   const double most = std::numeric_limits<double>::max();

@@ -5,42 +5,39 @@
  * @brief   the metadata and the stream of a ZFP-compressed vtkImageData
  *
  * A compressed volume is a vtkImageData with the geometry of the original (extent, spacing, origin,
- * direction matrix), without the compressed array, and with these arrays in its field data
- * (version 1 of the format; version 2 where something is hidden, or the stream has its own units):
+ * direction matrix), without the compressed array, and with these arrays in its field data. They
+ * are version 1 of the format, or version 2 if something is hidden or the stream has custom units:
  *
  * - ProgIso.ZFP.Version (int): 1 or 2
  * - ProgIso.ZFP.Stream (unsigned char): fixed-rate zfp stream, see below
  * - ProgIso.ZFP.BlockBits (int): bits per block of 4x4x4 samples, 9..2048
  * - ProgIso.ZFP.Dimensions (3 64-bit integers): samples per axis (points, or cells for cell data)
- * - ProgIso.ZFP.Range (2 doubles): smallest and largest sample, as the stream's float32 has them
+ * - ProgIso.ZFP.Range (2 doubles): smallest and largest sample before encoding, as float32
  * - ProgIso.ZFP.ScalarType (int): VTK type of the original array
  * - ProgIso.ZFP.ArrayName (string): name of the original array
  * - ProgIso.ZFP.Component (int): component of the original array
  * - ProgIso.ZFP.Association (int): 0 point data, 1 cell data
  * - ProgIso.ZFP.Extent (6 integers, optional): the image extent that the stream covers
  * - ProgIso.ZFP.HiddenSamples, ProgIso.ZFP.HiddenCells (pairs of unsigned 64-bit integers,
- *   optional): what is hidden, as runs of blocks, see vtkBlockMask: first block, bits
+ *   optional): what is hidden, as runs of blocks (first block, bits), see vtkBlockMask
+ * - ProgIso.ZFP.Offset, ProgIso.ZFP.Scale (double, optional, default 0 and 1): the units of the
+ *   stream; a sample is Offset + Scale * (value in the stream), in double precision
  *
- * - ProgIso.ZFP.Offset, ProgIso.ZFP.Scale (double, optional): a sample is Offset + Scale times what
- *   the stream has, in double precision; 0 and 1 where they are missing
+ * Hidden samples have no values: their stored values are undefined. There is no isosurface in a
+ * cell of the interpolant that has a hidden corner, or that is itself hidden.
  *
- * Hidden samples have no values: what the stream has in their place is of no account. There is no
- * isosurface in a cell of the interpolant that has a hidden corner, or that is itself hidden.
- *
- * The stream covers the image, or more than it: a piece of an image that several processes share,
- * or a subset cut out of one, takes the stream of a larger extent with it. What lies beyond the
- * image is then not part of it, but its samples serve to interpolate and to shade at the piece's
- * faces (ghost samples). Without Extent, or where the image has the stream's size, the two are the
- * same.
+ * The stream covers the image, or a larger extent: that is so for a piece of an image that several
+ * processes share, and for a subset cut out of an image. What lies beyond the image is not part of
+ * it, but its samples (ghost samples) serve to interpolate and shade at the image's faces. Without
+ * Extent, or if the image has the stream's size, the stream covers the image exactly.
  *
  * The stream is zfp's (codec 5) for a 3-D float32 array, without zfp's header: blocks in x-fastest
  * order, block i at bit i*BlockBits (bits count from the least significant one of 64-bit
  * little-endian words), padded with zero bits to a multiple of 8 bytes. Being ordinary field data
  * it passes through every VTK reader, writer and pipeline.
  *
- * Read() checks everything before anyone trusts it: presence, types, sizes, 64-bit overflow, the
- * length of the stream and that the range is finite. What it accepts can be decoded without reading
- * out of bounds.
+ * Read() checks everything: presence, types, sizes, 64-bit overflow, the length of the stream and
+ * that the range is finite. What it accepts can be decoded without reading out of bounds.
  *
  * Source: P. Lindstrom, "Fixed-Rate Compressed Floating-Point Arrays", TVCG 2014; zfp 1.0.1.
  *
@@ -54,7 +51,7 @@
 #include "vtkProgIsoFiltersModule.h" // for export macro
 #include "vtkSmartPointer.h"         // for the stream
 
-#include <string> // for the array name and the error message
+#include <string> // for the array name and error messages
 
 class vtkDataObject;
 class vtkImageData;
@@ -70,8 +67,8 @@ public:
 
   enum
   {
-    FormatVersion = 2,       ///< newest that is read; written where it takes it, else 1
-    MinimumBlockBits = 9,    ///< sign-less float block: 1 bit "not empty" + 8 bits exponent
+    FormatVersion = 2,       ///< newest that can be read; Write() writes 1 if that is enough
+    MinimumBlockBits = 9,    ///< 1 bit "not empty" and 8 bits exponent
     MaximumBlockBits = 2048, ///< 32 bits per sample
   };
 
@@ -82,42 +79,43 @@ public:
   };
 
   /**
-   * Whether a data object carries a compressed stream in its field data. Cheap; says nothing about
-   * whether the stream is valid (Read() does). Null is allowed.
+   * Whether a data object, which may be null, has a compressed stream in its field data. Cheap;
+   * does not tell whether the stream is valid (Read() does).
    */
   static bool IsCompressed(vtkDataObject* object);
 
   /**
-   * Bits per block that zfp uses for a rate in bits per sample (without word alignment):
-   * 64*rate rounded to the nearest integer, at least 9. Returns 0 for a rate that is not in
-   * (0, 32] (or is NaN).
+   * Returns the bits per block that zfp uses for a rate in bits per sample (without word
+   * alignment): 64*rate rounded to the nearest integer, at least 9. 0 for a rate that is not in (0,
+   * 32] or NaN.
    */
   static int BlockBitsForRate(double rate);
 
   /**
-   * Number of 4x4x4 blocks of a volume, and the bytes of its stream, padding included; -1 when a
-   * dimension is not positive or the result does not fit 63 bits.
+   * Returns the number of 4x4x4 blocks of a volume, and the bytes of its stream, padding included;
+   * -1 if a dimension is not positive or the result does not fit 63 bits.
    */
   static vtkTypeInt64 NumberOfBlocksFor(const int dims[3]);
   static vtkTypeInt64 StreamBytesFor(const int dims[3], int blockBits);
 
   /**
-   * Whether an algorithm's input is nothing because other processes have all pieces of an image:
-   * that is no error.
+   * Whether an algorithm's input is empty because other processes have all pieces of an image,
+   * which is no error.
    */
   static bool IsEmptyPiece(vtkInformation* input);
 
   /**
-   * The extent of an image without its ghost cells, as vtkGhostType marks them; they must be layers
-   * around the rest. Empty where there is nothing else.
+   * Finds the extent of an image without its ghost cells, which vtkGhostType marks, and which must
+   * be layers around the rest. Empty if there are only ghost cells.
    */
   static void GetOwnExtent(vtkImageData* image, int own[6]);
 
   /**
-   * The extent that a stream should cover so that the part `own` of an image of extent `whole`
-   * looks as the whole does: a sample more on each side, for normals, and then whole blocks,
-   * counted from the first sample of `whole`, so that each decodes to the same values as in a
-   * stream of the whole. At most NumberOfGhostLevels beyond `own`, and nothing beyond `whole`.
+   * Finds the extent that a stream should cover so that the part `own` of an image of extent
+   * `whole` looks the same as in the whole: one more sample on each side, for normals, extended to
+   * whole blocks, counted from the first sample of `whole`, so that each decodes to the same values
+   * as in a stream of the whole. At most NumberOfGhostLevels beyond `own`, and nothing beyond
+   * `whole`.
    */
   static void GetCoveringExtent(
     const int own[6], const int whole[6], int association, int covering[6]);
@@ -127,32 +125,32 @@ public:
   };
 
   /**
-   * Take metadata and stream (by reference) from an image. Returns false, leaving this object
-   * empty, when something is missing, inconsistent with the image, truncated or out of range;
-   * GetErrorMessage() then holds one sentence that names it.
+   * Takes metadata and stream (by reference) from an image. Returns false, and leaves this object
+   * empty, if something is missing, inconsistent with the image, truncated or out of range;
+   * GetErrorMessage() then says what.
    */
   bool Read(vtkImageData* image);
 
   /**
-   * Store metadata and stream (by reference) in the field data of an image, replacing what is
-   * there. The inverse of Read(); used by what makes streams.
+   * Stores metadata and stream (by reference) in the field data of an image, in place of what is
+   * there. The inverse of Read().
    */
   void Write(vtkImageData* image) const;
 
   /**
-   * Keep of the stream only what GetCoveringExtent() tells for a part of the volume, block by block
-   * as they are. `own` lies within GetExtent().
+   * Reduces the stream to the blocks of GetCoveringExtent() for a part of the volume, without
+   * encoding them again. `own` lies within GetExtent().
    */
   void Crop(const int own[6]);
 
   /**
-   * Remove the arrays that Write() stores from the field data of an image, or of what was made of
-   * one.
+   * Removes the arrays that Write() stores from the field data of any object.
    */
   static void Remove(vtkDataObject* object);
 
   /**
-   * What the last Read() objected to; empty after a successful one.
+   * What is wrong with the image of the last Read(), as the end of the sentence "The input is ...";
+   * empty after a successful one.
    */
   std::string GetErrorMessage() const { return this->ErrorMessage; }
 
@@ -176,14 +174,14 @@ public:
 
   ///@{
   /**
-   * The image extent that the stream covers. Write() takes the image's own where it was not set.
+   * The image extent that the stream covers. If it is not set, Write() takes that of the image.
    */
   vtkGetVector6Macro(Extent, int);
   vtkSetVector6Macro(Extent, int);
   ///@}
 
   /**
-   * Whether the stream covers an image and nothing else.
+   * Whether the stream covers exactly an image.
    */
   bool Covers(vtkImageData* image) const;
 
@@ -197,19 +195,20 @@ public:
 
   ///@{
   /**
-   * Smallest and largest visible sample of the original array, as the stream's float32 has them;
-   * zeros where all are hidden. Decoded samples may lie a little outside (lossy compression).
+   * Smallest and largest visible sample of the original array, after conversion to float32; zeros
+   * if all are hidden. Decoded samples may lie a little outside (lossy compression).
+   * SetStoredRange() takes the range in the stream's units, and clamps what overflows.
    */
   vtkGetVector2Macro(Range, double);
   vtkSetVector2Macro(Range, double);
-  void SetStoredRange(double low, double high); ///< in its units; what overflows is cut off
+  void SetStoredRange(double low, double high);
   ///@}
 
   ///@{
   /**
-   * The stream's units: a sample is Offset + Scale times what the stream has. 0 and 1, but where
-   * float32 cannot hold the samples themselves: small differences on a large value, or values
-   * beyond what it or zfp takes. Scale is above 0.
+   * The stream's units: a sample is Offset + Scale * (value in the stream). Other than 0 and 1 only
+   * if float32 cannot hold the samples themselves: small differences on a large value, or values
+   * beyond the range of float32 or zfp. Scale is above 0.
    */
   vtkGetMacro(Offset, double);
   vtkSetMacro(Offset, double);
@@ -243,8 +242,8 @@ public:
 
   ///@{
   /**
-   * Samples that are hidden, and, of point data, cells of the image; and what follows for the cells
-   * between samples: hidden, or with a hidden corner.
+   * The hidden samples, and, for point data, the hidden cells of the image. From both follow the
+   * cells between samples that have no surface: those hidden, or with a hidden corner.
    */
   const vtkBlockMask& GetHiddenSamples() const { return this->HiddenSamples; }
   void SetHiddenSamples(const vtkBlockMask& mask);
@@ -254,6 +253,7 @@ public:
   bool HidesAny() const { return !this->HiddenSamples.IsEmpty() || !this->HiddenCells.IsEmpty(); }
   ///@}
 
+  ///@{
   /**
    * The stream; null before a successful Read(). At least StreamBytesFor() bytes.
    */

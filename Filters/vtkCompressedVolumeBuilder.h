@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkCompressedVolumeBuilder
- * @brief   compress a volume slab by slab, so that it never needs to be in memory as a whole
+ * @brief   compress a volume slab by slab, without the whole in memory
  *
- * Takes slices in order of z, some at a time, and holds nothing but their compressed stream: a
- * simulation or a reader hands over a slab, and may then reuse its memory. The result is bit for
- * bit what vtkImageZFPCompress makes of the whole image with point data.
+ * Takes slices in order of z, some at a time, and keeps only their compressed stream: a simulation
+ * or a reader may reuse a slab's memory once it is added. The result is bit for bit that of
+ * vtkImageZFPCompress for the whole image with point data.
  *
  * @code
  * builder->Start(dims, rate);
@@ -14,8 +14,8 @@
  * builder->Finish(image);
  * @endcode
  *
- * Every function returns false when something is wrong; GetErrorMessage() then holds one sentence
- * that says what, and nothing but Start() succeeds any more.
+ * Every function returns false after an error. GetErrorMessage() then describes it in one sentence,
+ * and only Start() can succeed.
  *
  * @sa vtkImageZFPCompress vtkCompressedVolume vtkZFPWriter
  */
@@ -40,8 +40,7 @@ public:
 
   ///@{
   /**
-   * Name of the array that the result says to hold. By default that of the first slab's array, or
-   * "scalars".
+   * Name of the compressed array. Default: that of the first slab's array, or "scalars".
    */
   std::string GetArrayName() const { return this->ArrayName; }
   void SetArrayName(const std::string& name);
@@ -49,8 +48,8 @@ public:
 
   ///@{
   /**
-   * Whether NaN and infinite samples (as float32) are hidden, as vtkImageZFPCompress has it.
-   * Default off: they are refused. Not to be changed between slabs.
+   * Whether NaN and infinite samples (as float32) are hidden, as in vtkImageZFPCompress. Default
+   * off: they are an error. Must not change between slabs.
    */
   vtkSetMacro(MaskNonFinite, bool);
   vtkGetMacro(MaskNonFinite, bool);
@@ -59,9 +58,9 @@ public:
 
   ///@{
   /**
-   * The stream's units, see vtkCompressedVolume: samples are kept as float32 after Offset is taken
-   * off and the rest divided by Scale, above 0. Default 0 and 1. vtkImageZFPCompress, which sees
-   * all samples, chooses them itself. Not to be changed between slabs.
+   * The stream's units, see vtkCompressedVolume: the stream has (sample - Offset) / Scale as
+   * float32; Scale is above 0. Default 0 and 1. (vtkImageZFPCompress, which sees all samples,
+   * chooses them itself.) Must not change between slabs.
    */
   vtkSetMacro(Offset, double);
   vtkGetMacro(Offset, double);
@@ -71,40 +70,40 @@ public:
 
   ///@{
   /**
-   * Threads used to encode; 0, the default, takes all that OpenMP offers (OMP_NUM_THREADS).
+   * Threads that encode; 0, the default, takes all that OpenMP offers (OMP_NUM_THREADS).
    */
   vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
   vtkGetMacro(NumberOfThreads, int);
   ///@}
 
   /**
-   * Begin a volume of dims[0] x dims[1] x dims[2] samples, at least 2 along each axis, at a rate in
-   * bits per sample, in (0, 32]. Drops what was begun before.
+   * Begins a volume of dims[0] x dims[1] x dims[2] samples, at least 2 along each axis, at a rate
+   * in bits per sample, in (0, 32]. Discards an unfinished volume.
    */
   bool Start(const int dims[3], double rate);
 
   /**
-   * Compress the next slices: one component of an array of a multiple of dims[0]*dims[1] tuples, x
-   * fastest. Of all slabs but the last that multiple must be a multiple of 4, and all must be of
-   * one type. See MaskNonFinite for NaN.
+   * Compresses the next slices: one component of an array whose number of tuples is a multiple of
+   * dims[0]*dims[1], x fastest. Every slab except the last must have a multiple of 4 slices, and
+   * all must have one type. See MaskNonFinite for NaN.
    */
   bool AddSlab(vtkDataArray* samples, int component = 0);
 
   /**
-   * Slices taken so far.
+   * Slices added so far.
    */
   int GetNumberOfSlices() const;
 
   /**
-   * Store the compressed volume in an image, when all slices are there: its dimensions and field
-   * data are set, its point and cell data emptied; spacing, origin and direction matrix stay.
-   * Refused for values all of which are tiny to zfp (below 2^-74, about 5e-23) at the Scale. Frees
-   * what the builder holds.
+   * Stores the compressed volume in an image when all slices have been added: sets its dimensions
+   * and field data, and empties its point and cell data; spacing, origin and direction matrix stay.
+   * An error if all values are too small for zfp (below 2^-74, about 5e-23, in units of Scale).
+   * Frees the builder's memory.
    */
   bool Finish(vtkImageData* image);
 
   /**
-   * What the last call objected to; empty after a successful one.
+   * What went wrong in the last call; empty after a successful one.
    */
   std::string GetErrorMessage() const { return this->ErrorMessage; }
 

@@ -4,14 +4,15 @@
  * @class   vtkImageZFPDecompress
  * @brief   decode a compressed volume back to float32 samples
  *
- * The inverse of vtkImageZFPCompress: the output is the vtkImageData with the input's geometry and
- * field data (less the stream and its metadata) and one float32 array with one component, the
- * active scalars, under the original name and association (point or cell data). Blocks are decoded
- * in parallel with OpenMP; the values are those of libzfp's zfp_decompress(), bit for bit. Hidden
- * samples are NaN, and points or cells that are hidden are marked so in ghost arrays.
+ * The inverse of vtkImageZFPCompress. The output is a vtkImageData with the input's geometry and
+ * field data (without the stream and its metadata), and one array with one component, the active
+ * scalars, with the original name and association (point or cell data). Its values are float32, and
+ * bit for bit those of libzfp's zfp_decompress(); or doubles if the stream has custom units. Blocks
+ * are decoded in parallel with OpenMP. Hidden samples are NaN, and hidden points or cells are
+ * flagged in ghost arrays.
  *
  * Errors, one message and an output without array: an input that is not a compressed volume, or
- * whose metadata or stream is inconsistent (see vtkCompressedVolume::Read).
+ * whose metadata or stream is inconsistent (see vtkCompressedVolume::Read); too little memory.
  *
  * @sa vtkImageZFPCompress vtkCompressedVolume vtkZFPReader
  */
@@ -30,7 +31,7 @@ public:
 
   ///@{
   /**
-   * Threads used to decode; 0, the default, takes all that OpenMP offers (OMP_NUM_THREADS).
+   * Threads that decode; 0, the default, takes all that OpenMP offers (OMP_NUM_THREADS).
    */
   vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
   vtkGetMacro(NumberOfThreads, int);

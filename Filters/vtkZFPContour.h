@@ -2,36 +2,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkZFPContour
- * @brief   isosurfaces of a compressed volume as triangles, decoding a brick at a time
+ * @brief   isosurfaces of a compressed volume as triangles, decoded a brick at a time
  *
- * Takes a compressed volume (see vtkCompressedVolume) and produces a vtkPolyData: the surface that
- * vtkFlyingEdges3D makes of the decoded image, with the same points, to the last bit of their
- * coordinates, normals and gradients, and the same triangles, though in another order. The order
- * does not depend on the number of threads.
+ * Makes of a compressed volume (see vtkCompressedVolume) the vtkPolyData that vtkFlyingEdges3D
+ * makes of the decoded image: the same points, to the last bit of their coordinates, normals and
+ * gradients, and the same triangles, in another order. The order does not depend on the number of
+ * threads.
  *
- * The volume is never decoded as a whole. It is cut into bricks of BrickSize^3 cells; every thread
+ * The volume is never decoded as a whole. It is cut into bricks of BrickSize^3 cells. Every thread
  * decodes one at a time and contours it with vtkFlyingEdges3D, and the parts are joined at the
- * points that they share. For bricks of the default size, that takes 2 MiB of memory a thread,
- * beside the surface and, until they are joined, its parts, which take about two thirds as much.
+ * points that they share. With bricks of the default size, a thread needs 2 MiB of memory, beside
+ * the mesh and, until they are joined, its parts, which take about two thirds as much.
  *
- * A compressed volume does not say between which values a brick's samples lie: the first update
- * decodes every brick once, and remembers their ranges (8 bytes a brick). As long as the input
- * stays the same, later updates, with other isovalues for example, decode those bricks only that
- * hold an isovalue.
+ * A compressed volume has no ranges of bricks: the first update decodes every brick, and remembers
+ * its range (8 bytes a brick). While the input stays the same, later updates, such as with other
+ * isovalues, decode only the bricks that contain an isovalue.
  *
- * Of cell data the samples lie in the cells' centres. What the input's field data hold beside the
- * compressed stream is passed on. Points are float32, as vtkFlyingEdges3D's are. There is no
- * array to choose: a compressed volume holds one.
+ * The samples of cell data lie in the centres of cells. The input's field data, without the
+ * compressed stream, are passed on. Points are float32, as those of vtkFlyingEdges3D. There is no
+ * array to choose, because a compressed volume has only one.
  *
- * Of a piece of a volume, whose stream covers samples around it, the triangles beyond the piece are
- * there too, marked as ghost cells (vtkGhostType): they are those of other pieces.
+ * For a piece of a volume, whose stream covers samples around it, the output also has the triangles
+ * beyond the piece, which belong to other pieces, marked as ghost cells (vtkGhostType).
  *
- * Bricks are contoured in parallel by vtkSMPTools. Progress events are sent, and an abort is
- * noticed (the output is then empty), by the thread that updates the filter.
+ * vtkSMPTools contours bricks in parallel. The thread that updates the filter reports progress, and
+ * notices an abort, after which the output is empty.
  *
- * Errors, each one message and an empty output: an input that is not a compressed volume, which is
- * to be compressed first or contoured by vtkFlyingEdges3D itself, or whose metadata or stream is
- * inconsistent (see vtkCompressedVolume::Read); an isovalue that is not finite.
+ * Errors, each one message and an empty output: an input that is not a compressed volume (compress
+ * it first, or use vtkFlyingEdges3D), or whose metadata or stream is inconsistent (see
+ * vtkCompressedVolume::Read); an isovalue that is not finite.
  *
  * @sa vtkImageZFPCompress vtkCompressedVolume vtkFlyingEdges3D vtkProgressiveIsosurfaceMapper
  */
@@ -58,14 +57,14 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * Isovalues count.
+   * Includes that of the isovalues.
    */
   vtkMTimeType GetMTime() override;
 
   ///@{
   /**
-   * The isovalues, in the units of the samples, as in vtkContourFilter and its like. One, 0, by
-   * default. The triangles of the first come first.
+   * The isovalues, in the units of the samples, as in vtkContourFilter. Default: one, 0. The
+   * triangles of the first come first.
    */
   void SetValue(int i, double value) { this->ContourValues->SetValue(i, value); }
   double GetValue(int i) { return this->ContourValues->GetValue(i); }
@@ -77,7 +76,7 @@ public:
 
   ///@{
   /**
-   * Isovalues in equal steps; the ends of the range are among them.
+   * Sets isovalues in equal steps; both ends of the range are among them.
    */
   void GenerateValues(int number, double range[2])
   {
@@ -100,7 +99,7 @@ public:
 
   ///@{
   /**
-   * Whether to keep the samples' gradients, the point array "Gradients". Off by default.
+   * Whether to compute gradients of the samples, the point array "Gradients". Off by default.
    */
   vtkSetMacro(ComputeGradients, vtkTypeBool);
   vtkGetMacro(ComputeGradients, vtkTypeBool);
@@ -109,8 +108,8 @@ public:
 
   ///@{
   /**
-   * Whether to store the isovalue at every point, in an array that has the compressed array's name.
-   * On by default.
+   * Whether to store the isovalue at every point, in an array with the compressed array's name. On
+   * by default.
    */
   vtkSetMacro(ComputeScalars, vtkTypeBool);
   vtkGetMacro(ComputeScalars, vtkTypeBool);
@@ -119,9 +118,9 @@ public:
 
   ///@{
   /**
-   * Cells along the side of a brick, from 4 to 256, default 64. Rounded down to a multiple of 4.
-   * Smaller ones take less memory and are passed over more often, larger ones overlap less: a brick
-   * is decoded with the samples around it.
+   * Cells along the side of a brick, from 4 to 256, rounded down to a multiple of 4. Default 64.
+   * Smaller bricks need less memory, and more of them can be skipped; larger ones overlap less, for
+   * a brick is decoded with the samples around it.
    */
   void SetBrickSize(int size);
   vtkGetMacro(BrickSize, int);
@@ -129,8 +128,8 @@ public:
 
   ///@{
   /**
-   * Threads used; 0, the default, takes all that vtkSMPTools offers. Where its backend is
-   * Sequential, as in VTK's wheels, STDThread is used instead; set 1 to have no threads.
+   * Number of threads; 0, the default, takes all that vtkSMPTools offers. If its backend is
+   * Sequential, as in VTK's wheels, STDThread is used instead; 1 starts no threads.
    */
   vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
   vtkGetMacro(NumberOfThreads, int);
@@ -138,8 +137,8 @@ public:
 
   ///@{
   /**
-   * Of the last update: bricks of the volume, those that were decoded, and the most bytes of
-   * decoded samples that all threads held at a time.
+   * Statistics of the last update: bricks of the volume, those that were decoded, and the most
+   * bytes of decoded samples that all threads held at a time.
    */
   vtkGetMacro(NumberOfBricks, vtkIdType);
   vtkGetMacro(NumberOfDecodedBricks, vtkIdType);

@@ -5,16 +5,16 @@
  * @brief   read a file of the zfp command line tool or zfpy as a compressed volume
  *
  * Reads fixed-rate streams of 3-D float32 arrays, with zfp's header (`zfp -h`, zfpy) or without
- * (give DataDimensions and Rate). The stream is taken over as it is, only realigned behind a
- * header; nothing is compressed again. As zfp files hold no value range, the blocks are decoded
- * once to find it, and the metadata's ScalarType is VTK_FLOAT.
+ * (set DataDimensions and Rate). The stream is kept bit for bit, and nothing is compressed again.
+ * zfp files have no range of values, so that the blocks are decoded once to find it. The metadata's
+ * ScalarType is VTK_FLOAT.
  *
  * Errors, one message and an empty output: a file that cannot be read; another codec version,
  * scalar type, dimensionality or compression mode; fewer than 2 samples along an axis; a truncated
  * stream; without header, a file size that does not match dimensions and rate; samples that decode
  * to infinity (a damaged stream or the wrong dimensions).
  *
- * zfp files hold no geometry: set DataSpacing and DataOrigin.
+ * zfp files have no geometry: set DataSpacing and DataOrigin.
  *
  * @sa vtkZFPWriter vtkImageZFPDecompress vtkCompressedVolume
  */
@@ -42,14 +42,14 @@ public:
   ///@}
 
   /**
-   * 1 if the file starts like one with zfp's header that this reader reads, else 0. Files without
+   * Returns 1 if this reader can read the file and it has zfp's header, else 0. Files without
    * header cannot be recognised.
    */
   int CanReadFile(const char* fileName);
 
   ///@{
   /**
-   * Samples per axis of a file without header. (0, 0, 0), the default: the file has a header.
+   * Samples per axis of a file without header. Default (0, 0, 0): the file has a header.
    */
   vtkSetVector3Macro(DataDimensions, int);
   vtkGetVector3Macro(DataDimensions, int);
@@ -57,7 +57,7 @@ public:
 
   ///@{
   /**
-   * Rate of a file without header, in bits per sample in (0, 32], as given to `zfp -r`. Default 8.
+   * Rate of a file without header, in bits per sample in (0, 32], as for `zfp -r`. Default 8.
    * Ignored for a file with header.
    */
   vtkSetMacro(Rate, double);
@@ -76,7 +76,7 @@ public:
 
   ///@{
   /**
-   * Name of the array, which zfp files do not hold. Default "scalars".
+   * Name of the array, which zfp files do not have. Default "scalars".
    */
   vtkSetStringMacro(ArrayName);
   vtkGetStringMacro(ArrayName);

@@ -2,16 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkZFPWriter
- * @brief   write a compressed volume as a file of zfp's own
+ * @brief   write a compressed volume as a zfp file
  *
  * Writes the stream of a compressed volume as the zfp command line tool (1.0) does, with or without
  * its header, so that `zfp -h -z FILE -o OUT` or zfpy decode it. Nothing is decoded or compressed
- * again. The file holds neither geometry, array name nor original type: use a VTI writer to keep
+ * again. The file has neither geometry, array name nor original type: use a VTI writer to keep
  * them.
  *
- * Errors, one message and Write() returns 0: an input that is not a (valid) compressed volume, no
- * file name, a file that cannot be written (which is then removed), or, with header, an axis of
- * more than 65536 samples (zfp's header has 16 bits for each).
+ * Errors, one message and Write() returns 0: an input that is not a valid compressed volume, or
+ * that a zfp file cannot hold (a piece, custom units, hidden samples or cells); no file name; a
+ * file that cannot be written (which is then removed); with header, an axis of more than 65536
+ * samples (zfp's header has 16 bits for each).
  *
  * @sa vtkZFPReader vtkImageZFPCompress vtkCompressedVolume
  */
@@ -40,8 +41,8 @@ public:
 
   ///@{
   /**
-   * Whether to write zfp's header (dimensions, type and rate), as `zfp -h` does. Default on.
-   * Without it a reader must be told dimensions and rate.
+   * Whether to write zfp's header (dimensions, type and rate), as `zfp -h` does. Default on. A
+   * reader of a file without header must know dimensions and rate.
    */
   vtkSetMacro(WriteHeader, bool);
   vtkGetMacro(WriteHeader, bool);

@@ -23,7 +23,8 @@ Bricks::Bricks(const int dims[3], int size)
 //------------------------------------------------------------------------------
 vtkIdType Bricks::GetNumberOfBricks() const
 {
-  return static_cast<vtkIdType>(this->BricksPerAxis[0]) * this->BricksPerAxis[1] * this->BricksPerAxis[2];
+  return static_cast<vtkIdType>(this->BricksPerAxis[0]) * this->BricksPerAxis[1] *
+    this->BricksPerAxis[2];
 }
 
 //------------------------------------------------------------------------------

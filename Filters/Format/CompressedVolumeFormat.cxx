@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CompressedVolumeFormat.h"
 
+#include "Format/FieldArrays.h"
 #include "Pieces/PieceExtents.h"
 
 #include "vtkBlockMask.h"
@@ -10,19 +11,19 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkIntArray.h"
-#include "vtkNew.h"
 #include "vtkStringArray.h"
 #include "vtkTypeInt64Array.h"
-#include "vtkTypeUInt64Array.h"
 #include "vtkUnsignedCharArray.h"
-#include "vtkVariant.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <utility>
 
 namespace
 {
+using namespace FieldArrays;
 using Volume = vtkCompressedVolume;
 
 const char* const VersionName = "ProgIso.ZFP.Version";
@@ -49,96 +50,6 @@ constexpr int MaximumInt = std::numeric_limits<int>::max();
 bool IsCellData(Volume* volume)
 {
   return volume->GetAssociation() == Volume::CellData;
-}
-
-//------------------------------------------------------------------------------
-// Finds an array of `count` integers, or floating point numbers.
-Status FindNumbers(
-  vtkFieldData* fields, const char* name, int count, bool integers, vtkDataArray*& array)
-{
-  array = vtkArrayDownCast<vtkDataArray>(fields->GetAbstractArray(name));
-  const int type = array ? array->GetDataType() : VTK_VOID;
-  const bool floating = type == VTK_FLOAT || type == VTK_DOUBLE;
-  if (!array || floating == integers || array->GetNumberOfValues() != count)
-  {
-    return Status::Error("its field data array ", name,
-      array ? " does not hold " : " is missing: expected ", count,
-      integers ? " integer" : " floating point", count > 1 ? " values" : " value");
-  }
-  return {};
-}
-
-//------------------------------------------------------------------------------
-Status GetIntegers(vtkFieldData* fields, const char* name, int count, vtkTypeInt64* values)
-{
-  vtkDataArray* array = nullptr;
-  const Status status = FindNumbers(fields, name, count, true, array);
-  for (int i = 0; i < count && status; ++i)
-  {
-    values[i] = array->GetVariantValue(i).ToTypeInt64(); // exact, where GetComponent() is a double
-  }
-  return status;
-}
-
-//------------------------------------------------------------------------------
-// Gets an integer that must be in [low, high].
-Status GetInteger(vtkFieldData* fields, const char* name, int low, int high, int& value)
-{
-  vtkTypeInt64 number = 0;
-  if (Status status = GetIntegers(fields, name, 1, &number); !status)
-  {
-    return status;
-  }
-  if (number < low || number > high)
-  {
-    return Status::Error(name, " is ", number, ", not in ", low, "..", high);
-  }
-  value = static_cast<int>(number);
-  return {};
-}
-
-//------------------------------------------------------------------------------
-Status GetReals(vtkFieldData* fields, const char* name, int count, double* values)
-{
-  vtkDataArray* array = nullptr;
-  const Status status = FindNumbers(fields, name, count, false, array);
-  for (int i = 0; i < count && status; ++i)
-  {
-    values[i] = array->GetVariantValue(i).ToDouble();
-  }
-  return status;
-}
-
-//------------------------------------------------------------------------------
-template <typename ArrayT, typename T>
-void StoreValues(vtkFieldData* fields, const char* name, const T* values, int count)
-{
-  vtkNew<ArrayT> array;
-  array->SetName(name);
-  array->SetNumberOfValues(count);
-  for (int i = 0; i < count; ++i)
-  {
-    array->SetValue(i, values[i]);
-  }
-  fields->AddArray(array);
-}
-
-//------------------------------------------------------------------------------
-template <typename ArrayT, typename T>
-void StoreValue(vtkFieldData* fields, const char* name, const T& value)
-{
-  StoreValues<ArrayT>(fields, name, &value, 1);
-}
-
-//------------------------------------------------------------------------------
-void StoreMask(vtkFieldData* fields, const char* name, const vtkBlockMask& mask)
-{
-  if (!mask.IsEmpty())
-  {
-    const auto array = mask.ToArray();
-    array->SetName(name);
-    fields->AddArray(array);
-  }
 }
 
 //------------------------------------------------------------------------------
@@ -405,31 +316,16 @@ Status ReadUnits(vtkImageData* image, Volume* volume)
 }
 
 //------------------------------------------------------------------------------
-// Reads a mask for a volume of so many blocks; an empty one if it is missing.
-Status ReadMask(vtkFieldData* fields, const char* name, vtkTypeInt64 blocks, vtkBlockMask& mask)
-{
-  vtkAbstractArray* array = fields->GetAbstractArray(name);
-  if (!array)
-  {
-    return {};
-  }
-  vtkDataArray* numbers = vtkArrayDownCast<vtkDataArray>(array);
-  const std::string error =
-    numbers ? mask.FromArray(numbers, blocks) : std::string("does not hold numbers");
-  return error.empty() ? Status() : Status::Error("its field data array ", name, " ", error);
-}
-
-//------------------------------------------------------------------------------
 Status ReadHidden(vtkImageData* image, Volume* volume)
 {
   vtkFieldData* fields = image->GetFieldData();
   const vtkTypeInt64 blocks = Volume::NumberOfBlocksFor(volume->GetDimensions());
   vtkBlockMask samples, cells;
-  if (Status status = ReadMask(fields, HiddenSamplesName, blocks, samples); !status)
+  if (Status status = GetMask(fields, HiddenSamplesName, blocks, samples); !status)
   {
     return status;
   }
-  if (Status status = ReadMask(fields, HiddenCellsName, blocks, cells); !status)
+  if (Status status = GetMask(fields, HiddenCellsName, blocks, cells); !status)
   {
     return status;
   }
