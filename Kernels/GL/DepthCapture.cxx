@@ -70,7 +70,8 @@ private:
 
 void CaptureDepths(const std::int32_t part[4], GLuint buffer, std::int64_t offset)
 {
-  GLint drawn = 0, read = 0, samples = 0;
+  GLint drawn = 0, read = 0, samples = 0, alignment = 0;
+  glGetIntegerv(GL_PACK_ALIGNMENT, &alignment);
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &drawn);
   glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &read);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(drawn));
@@ -82,6 +83,7 @@ void CaptureDepths(const std::int32_t part[4], GLuint buffer, std::int64_t offse
     glPixelStorei(GL_PACK_ALIGNMENT, 4);
     glReadPixels(part[2], part[3], part[0], part[1], GL_DEPTH_COMPONENT, GL_FLOAT,
       reinterpret_cast<void*>(static_cast<std::intptr_t>(offset)));
+    glPixelStorei(GL_PACK_ALIGNMENT, alignment);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   }
   glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(read));

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import progiso
-from helpers.comparison import BACKGROUND, NESTED, SIZE, ComparisonScene, show
+from helpers.comparison import BACKGROUND, NESTED, OPAQUE, SIZE, ComparisonScene, show
 from helpers.geometry import PLANES, REGIONS, ball
 from helpers.images import blobs, make_image, noise, reference_volume
 from helpers.layers import blend, crossings_of
@@ -72,6 +72,19 @@ def test_layers_are_the_casters(field, view, settings):
     depth = progiso.depth(scene.mapper).ravel()
     far = ~(np.isclose(depth, first, atol=2e-4) | np.isinf(depth) & np.isinf(first))
     assert far.mean() <= tolerances.LAYERS_PIXELS
+
+
+def test_screenshots_keep_their_rows():
+    """A screenshot whose rows have an odd number of bytes is right after the depths of opaque
+    geometry were read: the pixel store is as it was before."""
+    image = progiso.compress(make_image(blobs((24, 32, 28), 12, waves=2)), rate=16)
+    scene = ComparisonScene(ours=True, size=(151, 97))
+    scene.add_mesh(image, OPAQUE)
+    before = scene.picture()
+    volume = scene.add(image, NESTED)
+    assert (scene.picture() != before).any()
+    volume.VisibilityOff()
+    np.testing.assert_array_equal(scene.picture(), before)
 
 
 @pytest.mark.parametrize("regions", REGIONS)
