@@ -54,9 +54,36 @@ def _add_set(
     defaults: Defaults,
     size_type: Callable[[str], tuple[int, int]],
 ) -> None:
+    """Add a set with its options."""
     one = sets.add_parser(
         name, help=defaults.description, description=_sentence(defaults.description)
     )
+    _add_images(one, defaults, size_type)
+    if name == "scaling":
+        _add_scaling(one, size_type)
+    if name in ("quick", "paper", "peers"):
+        one.add_argument(
+            "--largest-mesh", metavar="N", type=_at_least(2),
+            help="largest side of the volumes that meshes are made of (default: as memory allows)",
+        )  # fmt: skip
+    if name == "soak":
+        one.add_argument(
+            "--frames", metavar="N", type=_at_least(1), default=10_000,
+            help="how many are rendered (default: %(default)s)",
+        )  # fmt: skip
+    one.add_argument(
+        "--no-plots",
+        action="store_true",
+        help="leave the plots, which need matplotlib, to 'report'",
+    )
+    _add_output(one)
+    one.set_defaults(run=_measure, set=name)
+
+
+def _add_images(
+    one: argparse.ArgumentParser, defaults: Defaults, size_type: Callable[[str], tuple[int, int]]
+) -> None:
+    """Add the options that say which images a set renders, and how often."""
     one.add_argument(
         "--fields", metavar="A,B", default=defaults.fields,
         type=lambda text: tuple(text.split(",")),
@@ -81,32 +108,16 @@ def _add_set(
         "--size", metavar="WxH", type=size_type, default=(1280, 720),
         help="pixels (default: 1280x720)",
     )  # fmt: skip
-    if name == "scaling":
-        one.add_argument(
-            "--largest", metavar="N", type=_at_least(64), help="largest side of a volume"
-        )
-        one.add_argument(
-            "--images", metavar="WxH,WxH", default=IMAGE_SIZES,
-            type=lambda text: tuple(size_type(part) for part in text.split(",")),
-            help="sizes of images (default: 640x360,1280x720,1920x1080,3840x2160)",
-        )  # fmt: skip
-    if name in ("quick", "paper", "peers"):
-        one.add_argument(
-            "--largest-mesh", metavar="N", type=_at_least(2),
-            help="largest side of the volumes that meshes are made of (default: as memory allows)",
-        )  # fmt: skip
-    if name == "soak":
-        one.add_argument(
-            "--frames", metavar="N", type=_at_least(1), default=10_000,
-            help="how many are rendered (default: %(default)s)",
-        )  # fmt: skip
+
+
+def _add_scaling(one: argparse.ArgumentParser, size_type: Callable[[str], tuple[int, int]]) -> None:
+    """Add the options of the scaling with image and volume size."""
+    one.add_argument("--largest", metavar="N", type=_at_least(64), help="largest side of a volume")
     one.add_argument(
-        "--no-plots",
-        action="store_true",
-        help="leave the plots, which need matplotlib, to 'report'",
-    )
-    _add_output(one)
-    one.set_defaults(run=_measure, set=name)
+        "--images", metavar="WxH,WxH", default=IMAGE_SIZES,
+        type=lambda text: tuple(size_type(part) for part in text.split(",")),
+        help="sizes of images (default: 640x360,1280x720,1920x1080,3840x2160)",
+    )  # fmt: skip
 
 
 def _add_output(command: argparse.ArgumentParser, more: str = "") -> None:

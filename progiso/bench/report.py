@@ -170,9 +170,9 @@ def _peers(report: _Report, records: list[dict[str, Any]]) -> list[str]:
         "## Side by side",
         "",
         "In one process, one after the other, each in a new window. *File to first image*: "
-        "reading (a `.vti` with appended data for ProgIso, the plain file for VTK, both in the system's "
-        "file cache), extraction, and the *first frame*: upload, shaders, complete image. Shaders "
-        "may be in the driver's cache from fields before. *GPU memory*: the "
+        "reading (a `.vti` with appended data for ProgIso, the plain file for VTK, both in the "
+        "system's file cache), extraction, and the *first frame*: upload, shaders, complete image. "
+        "Shaders may be in the driver's cache from fields before. *GPU memory*: the "
         "most in use above what was before, by nvidia-smi; for ProgIso also, in brackets, what "
         "its mapper says it holds. *Main memory*: peak of the process above what it was before, "
         "with a software renderer's share and mapped files.",
@@ -420,7 +420,8 @@ def _errors(report: _Report, records: list[dict[str, Any]]) -> list[str]:
         "is, in voxels along the ray, where both hit; and the part of all rays that hit where "
         "they should not or the other way round (of a partial image also what it has not "
         "finished). Times are medians of the view after its opposite, the view having been "
-        "rendered before. *Pass by pass*: blocks are decoded as rays meet them, of small volumes too.",
+        "rendered before. *Pass by pass*: blocks are decoded as rays meet them, of small volumes "
+        "too.",
         "",
     ]
     for record in records:
@@ -650,12 +651,14 @@ def _budget_cells(point: dict[str, Any]) -> list[str]:
 # ---- long use
 
 
+_MEMORY_NAMES = {
+    "rss": "main memory of the process",
+    "gpu": "GPU memory in use (nvidia-smi)",
+    "mapper": "GPU memory, as the mapper counts it",
+}
+
+
 def _soak(report: _Report, records: list[dict[str, Any]]) -> list[str]:
-    names = {
-        "rss": "main memory of the process",
-        "gpu": "GPU memory in use (nvidia-smi)",
-        "mapper": "GPU memory, as the mapper counts it",
-    }
     lines = [
         "## Long use",
         "",
@@ -666,28 +669,32 @@ def _soak(report: _Report, records: list[dict[str, Any]]) -> list[str]:
         "",
     ]
     for record in records:
-        samples, warm_up = record["samples"], record["warm_up"]
-        first = next(i for i, n in enumerate(samples["frame"]) if n >= warm_up)
-        rows = []
-        for key, name in names.items():
-            grown = record["growth"][key]
-            if grown is None:
-                continue
-            cells = (samples[key][0], samples[key][first], samples[key][-1], 1000 * grown)
-            verdict = goals.memory_growth(f"growth of {name}", key, grown)
-            rows.append([name, *map(bytes_, cells), report.goal(record, verdict)])
+        rows = list(_growth_rows(report, record))
         errors = report.goal(record, goals.no_gl_errors(record["gl_errors"]))
         changes = ", ".join(f"{what} {times}" for what, times in record["changes"].items())
-        peak = bytes_(max(samples["peak"]))
+        peak = bytes_(max(record["samples"]["peak"]))
+        headers = ["memory", "at first", "warmed up", "at last", "growth", "goal"]
         lines += [
             f"### {_of(record)}, {record['frames']} frames",
             "",
-            *table(["memory", "at first", "warmed up", "at last", "growth", "goal"], rows),
+            *table(headers, rows),
             f"The mapper's most: {peak}. OpenGL errors: {record['gl_errors']} (goal: {errors}). "
             f"Changes beside camera and isovalues: {changes}.",
             "",
         ]
     return lines
+
+
+def _growth_rows(report: _Report, record: dict[str, Any]) -> Iterator[list[str]]:
+    samples, warm_up = record["samples"], record["warm_up"]
+    first = next(i for i, n in enumerate(samples["frame"]) if n >= warm_up)
+    for key, name in _MEMORY_NAMES.items():
+        grown = record["growth"][key]
+        if grown is None:
+            continue
+        cells = (samples[key][0], samples[key][first], samples[key][-1], 1000 * grown)
+        verdict = goals.memory_growth(f"growth of {name}", key, grown)
+        yield [name, *map(bytes_, cells), report.goal(record, verdict)]
 
 
 #: Kinds of measurements that tell no time.

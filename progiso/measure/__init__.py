@@ -1,1 +1,1 @@
-"""What benchmarks and verification share: windows, references, and how results are compared and told."""
+"""Share windows, references and tables between benchmarks and verification."""

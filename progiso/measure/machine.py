@@ -27,7 +27,7 @@ _RESET_PEAK = "5"  # to clear_refs: the peak of the resident set starts anew
 
 
 def use_all_cores() -> None:
-    """Have VTK's filters use all cores, as ParaView's do; those of PyPI's wheel use one by default."""
+    """Let VTK's filters use all cores, as in ParaView; PyPI's wheel uses one by default."""
     if vtkSMPTools.GetBackend() == "Sequential":
         vtkSMPTools.SetBackend("STDThread")
 

@@ -98,7 +98,7 @@ class View(ABC):
 
     @abstractmethod
     def depth(self) -> np.ndarray:
-        """Distances along the rays of the last view, ``inf`` where nothing is hit; row 0 is the top."""
+        """Distances along the last view's rays, ``inf`` without a hit; row 0 is the top."""
 
     @abstractmethod
     def depth_resolution(self) -> float:

@@ -1,14 +1,16 @@
 """Double-precision CPU ray caster of the exact trilinear isosurface.
 
-Every ray visits each cell that it crosses, found by an exact grid walk. Inside a cell the trilinear interpolant along a
-ray is a cubic; its extrema split the ray's way through the cell into monotone pieces, so that no root can be missed, double
-ones included. The surface lies where ``f >= isovalue`` changes along the ray within the volume; the volume's border
-has no caps.
+Every ray visits each cell that it crosses, found by an exact grid walk. Inside a cell the trilinear
+interpolant along a ray is a cubic; its extrema split the ray's way through the cell into monotone
+pieces, so that no root can be missed, double ones included. The surface lies where ``f >=
+isovalue`` changes along the ray within the volume; the volume's border has no caps.
 
-Rounding decides what a ray sees where its profile grazes the isovalue, and no caster in single precision can be asked to
-decide such a ray as this one does. So every ray is cast three times in one walk: for the isovalue itself (`Cast.depth`), and for
-the first place where the other side is *possible* (`Cast.early`) and where it is *certain* (`Cast.late`) if every value may be off
-by the `Slack` given. A correct depth lies between the two, and may be a miss only if no crossing is certain.
+Rounding decides what a ray sees where its profile grazes the isovalue, and no caster in single
+precision can be asked to decide such a ray as this one does. So every ray is cast three times in
+one walk: for the isovalue itself (`Cast.depth`), and for the first place where the other side is
+*possible* (`Cast.early`) and where it is *certain* (`Cast.late`) if every value may be off by the
+`Slack` given. A correct depth lies between the two, and may be a miss only if no crossing is
+certain.
 """
 
 from __future__ import annotations
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
 
 FLOAT32_ULP = 2.0**-24
 CHUNK = 1 << 16
+_SAME_AXES, _SAME_PLACE = np.eye(3), np.eye(4)
 
 
 @dataclass(frozen=True)
@@ -34,7 +37,8 @@ class Slack:
     Attributes
     ----------
     value
-        error of an interpolated value, in units in the last place (float32) of the cell's largest difference from the isovalue.
+        error of an interpolated value, in units in the last place (float32) of the cell's largest
+        difference from the isovalue.
     position
         error of a sample's position, in voxels.
     """
@@ -54,7 +58,8 @@ class Volume:
     index_to_world
         4x4 matrix that takes an array index (x, y, z) to world coordinates.
     hidden
-        array [z, y, x] of booleans, one a cell: where there is no surface; samples that only such cells have need not be finite.
+        array [z, y, x] of booleans, one a cell: where there is no surface; samples that only such
+        cells have need not be finite.
     """
 
     values: np.ndarray
@@ -67,9 +72,9 @@ class Volume:
         values: np.ndarray,
         origin: Sequence[float] = (0, 0, 0),
         spacing: Sequence[float] = (1, 1, 1),
-        direction: np.ndarray | Sequence[Sequence[float]] = np.eye(3),
+        direction: np.ndarray | Sequence[Sequence[float]] = _SAME_AXES,
         extent_start: Sequence[int] = (0, 0, 0),
-        user: np.ndarray = np.eye(4),
+        user: np.ndarray = _SAME_PLACE,
         shift: float = 0.0,
     ) -> Volume:
         """Place `values` as ``vtkImageData`` does; `shift` is 0.5 where they belong to cells."""
@@ -85,10 +90,10 @@ class Volume:
         cls,
         values: np.ndarray,
         image: vtkImageData,
-        user: np.ndarray = np.eye(4),
+        user: np.ndarray = _SAME_PLACE,
         shift: float = 0.0,
     ) -> Volume:
-        """Place `values` where a ``vtkImageData`` lies; `user` and `shift` as in `from_geometry`."""
+        """Place `values` where an image lies; `user` and `shift` as in `from_geometry`."""
         direction = image.GetDirectionMatrix()
         matrix = [[direction.GetElement(r, c) for c in range(3)] for r in range(3)]
         start = image.GetExtent()[::2]
@@ -126,9 +131,10 @@ class Camera:
     def rays(
         self, size: tuple[int, int], pixels: np.ndarray | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return origins and unit directions, each [height * width, 3], for an image of `size` (width, height).
+        """Make origins and unit directions, each [height * width, 3], of an image's rays.
 
-        `pixels`, counted through the rows from the top, has only some of them made.
+        `size` is width and height. `pixels`, counted through the rows from the top, has only some
+        of the rays made.
         """
         width, height = size
         position, forward = np.asarray(self.position, float), self.forward
@@ -149,7 +155,9 @@ class Camera:
 
 @dataclass(frozen=True)
 class Cast:
-    """What the rays see; every array has the shape of the image, distances are in world units and `inf` is a miss.
+    """What the rays see, in arrays of the image's shape.
+
+    Distances are in world units; `inf` is a miss.
 
     Attributes
     ----------
@@ -189,7 +197,8 @@ def cast(
     clip : (float, float)
         distances of the clipping planes, across the view, between which the rays go.
     pixels : array of int, optional
-        counted through the rows from the top: the only ones that are cast; the result is a list of them.
+        counted through the rows from the top: the only ones that are cast; the result is a list of
+        them.
 
     Returns
     -------
@@ -215,7 +224,10 @@ def cast_rays(
     begin: np.ndarray | float = 0.0,
     end: np.ndarray | float = np.inf,
 ) -> Cast:
-    """Cast the rays ``origins + t * directions``, t from `begin` to `end`, with unit directions; see `cast`."""
+    """Cast the rays ``origins + t * directions``, t from `begin` to `end`; see `cast`.
+
+    Directions have unit length.
+    """
     grid = _Grid(volume, float(isovalue), slack)
     to_index = np.linalg.inv(volume.index_to_world[:3, :3])
     starts = (np.asarray(origins, float) - volume.index_to_world[:3, 3]) @ to_index.T
@@ -232,7 +244,9 @@ def cast_rays(
 
 @dataclass(frozen=True)
 class Crossings:
-    """Where rays cross isosurfaces: one entry a crossing, those of a ray together and in their order along it.
+    """Where rays cross isosurfaces, one entry a crossing.
+
+    The crossings of a ray are together, in their order along it.
 
     Attributes
     ----------
@@ -294,13 +308,14 @@ def _unit(vector: np.ndarray) -> np.ndarray:
     return vector / np.linalg.norm(vector)
 
 
-# --- the grid ------------------------------------------------------------------------------------------------------------
+# --- the grid -------------------------------------------------------------------------------------
 
 
 class _Grid:
     """The samples, flat, and which cells can matter to a ray that started inside or outside.
 
-    What else a ray has to know of a cell is made when it gets there, so that a volume takes little more memory than its samples.
+    What else a ray has to know of a cell is made when it gets there, so that a volume takes little
+    more memory than its samples.
     """
 
     def __init__(self, volume: Volume, isovalue: float, slack: Slack) -> None:
@@ -337,18 +352,20 @@ class _Grid:
         excess = values.astype(float) - self.isovalue
         low, high = _cell_extremes(excess, np.minimum), _cell_extremes(excess, np.maximum)
         error = self._error(low, high)
-        # Bit 0: a ray that started inside can get out here. Bit 1: one that started outside can get in.
+        # Bit 0: a ray that started inside can get out here. Bit 1: one that started outside can get
+        # in.
         matters = (low <= error).astype(np.uint8) | ((high >= -error).astype(np.uint8) << 1)
-        # Bits 2 and 3: the same without any error. A cell at or above the isovalue throughout is not left for rounding's sake.
+        # Bits 2 and 3: the same without any error. A cell at or above the isovalue throughout is
+        # not left for rounding's sake.
         return matters | ((low < 0).astype(np.uint8) << 2) | ((high >= 0).astype(np.uint8) << 3)
 
     def _error(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-        """Return what the slack allows in cells whose corners exceed the isovalue by `low` to `high`."""
+        """Bound the error in cells whose corners exceed the isovalue by `low` to `high`."""
         largest = np.maximum(np.abs(low), np.abs(high))
         return self.slack.value * FLOAT32_ULP * largest + self.slack.position * (high - low)
 
     def cells(self, index: np.ndarray) -> tuple[dict[str, np.ndarray], np.ndarray]:
-        """Return the trilinear polynomials of cells, keyed by their variables, and the error that the slack allows in them."""
+        """Make the trilinear polynomials of cells, keyed by their variables, and their errors."""
         excess = self.samples[index + self.offsets[:, None]].astype(float) - self.isovalue
         c = dict(zip(_CORNERS, excess))
         polynomials = {
@@ -388,7 +405,7 @@ def _cell_extremes(samples: np.ndarray, pick: np.ufunc) -> np.ndarray:
     return samples
 
 
-# --- a ray's way through the grid -----------------------------------------------------------------------------------------
+# --- a ray's way through the grid -----------------------------------------------------------------
 
 
 def clip_to_box(
@@ -399,8 +416,10 @@ def clip_to_box(
     low: np.ndarray,
     high: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return where rays, each a column of `start` and `step`, enter and leave a box between `begin` and `end`; they miss it where
-    ``enter > leave``."""
+    """Find where rays enter and leave a box; they miss it where ``enter > leave``.
+
+    Rays are columns of `start` and `step`, and go from `begin` to `end`.
+    """
     near, far = np.asarray(begin), np.asarray(end)
     for axis in range(3):
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -448,7 +467,7 @@ def _cast_chunk(
 
 
 class _Walk:
-    """All rays of a chunk, step by step from cell to cell, until their last crossing is found or they leave."""
+    """Walks all rays of a chunk from cell to cell, to their last crossing or out of the volume."""
 
     def __init__(
         self, grid: _Grid, start: np.ndarray, step: np.ndarray, enter: np.ndarray, leave: np.ndarray
@@ -475,9 +494,10 @@ class _Walk:
         self._find_sides(np.arange(len(enter)))
 
     def _find_sides(self, rays: np.ndarray) -> None:
-        """Set +1 for rays that are inside where they are and -1 outside; where rounding decides, any outcome is possible.
+        """Set +1 for rays that are inside where they are, and -1 for those outside.
 
-        0 where that is hidden: it is found where the ray comes out.
+        Where rounding decides, any outcome is possible. A ray in a hidden cell keeps 0 until it
+        comes out.
         """
         if self.grid.hidden is not None:
             hidden = self.grid.hidden[self.index[rays]]
@@ -573,7 +593,7 @@ class _FullWalk(_Walk):
         return [np.concatenate(part) for part in zip(*self.found)]
 
     def _collect(self, rays: np.ndarray, far: np.ndarray) -> None:
-        """Note the crossings of rays in their cells, one at most on each monotone piece of the cubic."""
+        """Collect crossings in the rays' cells, one at most a monotone piece of the cubic."""
         near, corner = self.near[rays], self._corner(rays)
         a = np.clip(self.start[:, rays] + near * self.step[:, rays] - corner, 0, 1)
         b = np.clip(self.start[:, rays] + far * self.step[:, rays] - corner, 0, 1)
@@ -590,11 +610,14 @@ class _FullWalk(_Walk):
             )
 
 
-# --- the cubic along a ray --------------------------------------------------------------------------------------------------
+# --- the cubic along a ray ------------------------------------------------------------------------
 
 
 def _along(c: dict[str, np.ndarray], a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return coefficients [4, n] of the interpolants `c` at ``a + s * b`` (in the cell, 0 to 1), from the constant up."""
+    """Compute the coefficients [4, n] of the interpolants `c` at ``a + s * b``, constant first.
+
+    Places are in the cell, from 0 to 1.
+    """
     (ax, ay, az), (bx, by, bz) = a, b
     constant = (
         c[""] + c["x"] * ax + c["y"] * ay + c["z"] * az
@@ -602,7 +625,9 @@ def _along(c: dict[str, np.ndarray], a: np.ndarray, b: np.ndarray) -> np.ndarray
     )  # fmt: skip
     linear = (
         c["x"] * bx + c["y"] * by + c["z"] * bz
-        + c["xy"] * (ax * by + ay * bx) + c["xz"] * (ax * bz + az * bx) + c["yz"] * (ay * bz + az * by)
+        + c["xy"] * (ax * by + ay * bx)
+        + c["xz"] * (ax * bz + az * bx)
+        + c["yz"] * (ay * bz + az * by)
         + c["xyz"] * (ax * ay * bz + ax * az * by + ay * az * bx)
     )  # fmt: skip
     square = (
@@ -632,7 +657,7 @@ def _monotone_knots(cubic: np.ndarray) -> np.ndarray:
 def _first_root(
     cubic: np.ndarray, knots: np.ndarray, crossed: np.ndarray, threshold: np.ndarray
 ) -> np.ndarray:
-    """Return where the cubic first falls to the threshold; `crossed` tells at which knots it has."""
+    """Find where the cubic falls to the threshold; `crossed` marks the knots at which it has."""
     first = np.argmax(crossed, axis=0)
     column = np.arange(len(first))
     low, high = knots[np.maximum(first - 1, 0), column], knots[first, column]

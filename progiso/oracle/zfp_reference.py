@@ -1,4 +1,4 @@
-"""What libzfp itself makes of a fixed-rate stream: by its own Python binding, or by its command line tool."""
+"""Decode and encode fixed-rate streams by libzfp itself: its Python binding, or its tool."""
 
 import pathlib
 import shutil

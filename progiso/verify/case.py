@@ -41,7 +41,8 @@ class Outcome:
     Attributes
     ----------
     error, limit : float
-        In `unit`; an infinite error is a hit where none is possible, or a miss where one is certain.
+        In `unit`; an infinite error is a hit where none is possible, or a miss where one is
+        certain.
     time_ms : float, optional
         Of the slowest image; None where nothing is rendered.
     unit : str
@@ -81,7 +82,7 @@ class Case:
 
 
 def worst_of(outcomes: Iterable[Outcome]) -> Outcome:
-    """The outcome that is nearest to its limit, with the longest time and the first defect of all."""
+    """Pick the outcome nearest to its limit, with the longest time and the first defect of all."""
     outcomes = list(outcomes)
     worst = max(outcomes, key=lambda outcome: outcome.error / outcome.limit)
     times = [outcome.time_ms for outcome in outcomes if outcome.time_ms is not None]

@@ -83,7 +83,7 @@ def _along_a_long_one(settings: Settings) -> Outcome:
     return check_depths(settings, compressed(values), 0.2, camera, size=(24, 18), grazing=_NOISE)
 
 
-# --- cameras ---------------------------------------------------------------------------------------
+# --- cameras --------------------------------------------------------------------------------------
 
 
 def _from(
@@ -150,7 +150,7 @@ def _zoomed(scale: float, settings: Settings) -> Outcome:
 
 
 def _place(image: vtkImageData, camera: Camera) -> np.ndarray:
-    """Where the caster's ray from a camera to its focal point, or one beside it, meets the surface."""
+    """Find where the ray to a camera's focal point, or one beside it, meets the surface."""
     eye = caster.Camera(camera.position, camera.focal_point, camera.view_up, camera.view_angle)
     found = caster.cast(decoded(image), _ISOVALUE, eye, (9, 9))
     origins, directions = eye.rays((9, 9))

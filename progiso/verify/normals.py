@@ -21,6 +21,7 @@ from vtkmodules.vtkRenderingOpenGL2 import (
 
 from ..camera import Camera, orbit_camera
 from ..measure import tolerances
+from ..oracle import caster
 from .case import Case, Outcome, Settings
 from .fields import coordinates, noise
 from .scene import Picture, compressed, decoded, looking
@@ -131,19 +132,10 @@ def check_normals(
         depth, (eye, _) = view.depth().ravel(), view.rays()
     finally:
         view.close()
-    volume = decoded(image)
-    hit = np.isfinite(depth)
+    volume, hit = decoded(image), np.isfinite(depth)
     origins, directions = eye.rays(settings.size)
     places = (origins + directions * np.where(hit, depth, 0)[:, None])[hit]
-    to_index = np.linalg.inv(volume.index_to_world)
-    places = places @ to_index[:3, :3].T + to_index[:3, 3]
-    last = np.array(volume.values.shape[::-1]) - 1.0
-    expected = (gradient or _Differences(volume.values))(np.clip(places, 0, last))
-    strong = np.linalg.norm(expected, axis=1)
-    expected = -expected @ to_index[:3, :3]  # a gradient is transformed by the inverse's transpose
-    within = ((places >= inner) & (places <= last - inner)).all(axis=1)
-    # where there is next to no gradient, its direction is a matter of rounding
-    judged = within & (strong > tolerances.WEAK_GRADIENT * strong.max())
+    expected, judged = _expected_normals(volume, places, gradient, inner)
     angles = _degrees(normals[hit], expected)[judged]
     lit = np.linalg.norm(normals, axis=1) > 0
     return Outcome(
@@ -156,6 +148,25 @@ def check_normals(
         ),
         defect="hits without a normal" if (lit != hit).any() else "" if judged.any() else "no hits",
     )
+
+
+def _expected_normals(
+    volume: caster.Volume,
+    places: np.ndarray,
+    gradient: Callable[[np.ndarray], np.ndarray] | None,
+    inner: float,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Vectors along the normals at places in world coordinates, and which of them count."""
+    to_index = np.linalg.inv(volume.index_to_world)
+    places = places @ to_index[:3, :3].T + to_index[:3, 3]
+    last = np.array(volume.values.shape[::-1]) - 1.0
+    expected = (gradient or _Differences(volume.values))(np.clip(places, 0, last))
+    within = ((places >= inner) & (places <= last - inner)).all(axis=1)
+    # where there is next to no gradient, its direction is a matter of rounding
+    strong = np.linalg.norm(expected, axis=1)
+    judged = within & (strong > tolerances.WEAK_GRADIENT * strong.max())
+    # a gradient is transformed by the inverse's transpose
+    return -expected @ to_index[:3, :3], judged
 
 
 def _degrees(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -183,11 +194,11 @@ class _Differences:
         return total
 
 
-# --- fields with a gradient ------------------------------------------------------------------------
+# --- fields with a gradient -----------------------------------------------------------------------
 
 
 def _quadric(settings: Settings, scale: float = 1.0, **geometry: Any) -> Outcome:
-    """A polynomial of second order: its central differences are its gradient, between samples too."""
+    """A quadratic field: its central differences are its gradient, between samples too."""
     shape, centre = (22, 26, 24), np.array([11.3, 12.8, 10.4])
     a, b = np.diag([1.0, 0.6, 0.8]), np.array([[0, 0.2, -0.1], [0.2, 0, 0.15], [-0.1, 0.15, 0]])
     form = a + b
@@ -231,7 +242,7 @@ def _plane(settings: Settings) -> Outcome:
     )
 
 
-# --- against double precision ----------------------------------------------------------------------
+# --- against double precision ---------------------------------------------------------------------
 
 
 def _noise(cached: bool, settings: Settings) -> Outcome:

@@ -22,8 +22,8 @@ _ABOUT = """\
   along the ray, off the hit of a caster in double precision over the same decoded values. A ray
   grazes where the first place at which rounding makes a hit possible and the first at which it is
   certain are more than a thousandth of a voxel apart; it must stay between them. *∞* is a hit where
-  none is possible, or a miss where one is certain. In *degrees*: between normals. In *rays*: those that slip
-  through a closed surface, or hit one where there is nothing. In *faults*: 1
+  none is possible, or a miss where one is certain. In *degrees*: between normals. In *rays*:
+  those that slip through a closed surface, or hit one where there is nothing. In *faults*: 1
   where the one clear error that is due does not come.
 - **limit** is what is granted: of depths 10⁻⁴ voxels and the rounding of a float32 distance.
 - **verdict**: *ok*, *failed*, or *limit* where the limit is the bound of something that cannot be

@@ -24,7 +24,8 @@ from .fields import make_image
 #: Seconds that a GPU is kept busy before an image's time counts; it has been busy not long ago.
 _WARM_UP = 0.3
 
-#: From this part of grazing rays on it is told, and how many of all rays have not the caster's own hit.
+#: From this part of grazing rays on it is told, and how many of all rays have not the caster's own
+#: hit.
 _TOLD = 1e-3
 
 #: Bits a sample where a case is not of a rate: what is decoded is the field's to the last places.
@@ -59,7 +60,7 @@ class Picture(Isosurface):
     clip : tuple of float, optional
         Distances of the clipping planes; by default they stand around the volume.
     settings
-        Of `benchmarks.ours.Isosurface`.
+        Of `Isosurface`.
     """
 
     def __init__(
@@ -174,23 +175,27 @@ def check_depths(
     error, limit = found.worst
     # beyond what is asked of depths, within what their float32 can tell
     rounded = bool(error > tolerances.DEPTH_VOXELS)
-    about = f"{found.hits} hits"
-    if rounded:
-        far = np.max(np.where(np.isfinite(depth), depth, 0) * expected.voxels)
-        about += f"; float32 rounds distances of {far:.2g} voxels"
-    if found.grazing >= _TOLD:
-        about += f", {found.grazing:.1%} of the rays graze and {found.differing:.2%} differ"
+    far = np.max(np.where(np.isfinite(depth), depth, 0) * expected.voxels)
+    distances = f"; float32 rounds distances of {far:.2g} voxels" if rounded else ""
     return Outcome(
         error,
         limit,
         milliseconds,
-        note="; ".join(filter(None, (note, about))),
+        note="; ".join(filter(None, (note, f"{found.hits} hits{distances}{_grazing(found)}"))),
         documented=rounded,
         defect="; ".join(filter(None, defects)),
     )
 
 
+def _grazing(found: Agreement) -> str:
+    """Tell how many rays graze, where that is worth telling."""
+    if found.grazing < _TOLD:
+        return ""
+    return f", {found.grazing:.1%} of the rays graze and {found.differing:.2%} differ"
+
+
 def _wrong_hits(found: Agreement) -> str:
+    """Tell how many rays hit or miss for certain where they must not."""
     count = int(np.isinf(found.error).sum())
     return f"{count} rays hit where they cannot, or miss what is certain" if count else ""
 

@@ -90,11 +90,11 @@ def _sheet(settings: Settings) -> Outcome:
     return check_views(settings, compressed(values.astype(np.float32)), (0.5, 0.99))
 
 
-# --- cells and their cubics ------------------------------------------------------------------------
+# --- cells and their cubics -----------------------------------------------------------------------
 
 
 def _product(centre: float, axes: tuple[int, ...], size: int = 9) -> np.ndarray:
-    """The product of the coordinates along some axes, about a point: one trilinear field, exactly."""
+    """The product of coordinates about a point: one trilinear field, exactly."""
     factors = [c - centre for c in coordinates((size,) * 3)]
     return np.prod([factors[axis] for axis in axes], axis=0).astype(np.float32)
 
@@ -124,7 +124,7 @@ def _odd(size: tuple[int, int]) -> tuple[int, int]:
 
 
 def _touching(settings: Settings) -> Outcome:
-    """Rays that touch the surface in one point: the square of the way, seen from where it is not met."""
+    """Rays that touch the surface in one point, seen from where they do not cross it."""
     camera = parallel(looking((-16, -16, 4), (4, 4, 4), (0, 0, 1)), 1.5)
     image = compressed(-_product(4.0, (0, 1)))
     return check_views(
@@ -166,7 +166,7 @@ def _nearly_constant(settings: Settings) -> Outcome:
 
 
 def _zero(settings: Settings) -> Outcome:
-    """Cells that are zero throughout, at isovalue zero: inside, and the surface lies at their rim."""
+    """Cells of zeros at isovalue zero: they are inside, and the surface lies at their rim."""
     values = np.minimum(np.round(4 * blobs((24, 20, 28), 11)), 0)
     image = compressed(values.astype(np.float32))
     return check_views(settings, image, (0.0,), grazing=1.0)

@@ -90,7 +90,7 @@ def _digits(settings: Settings) -> Outcome:
     return check_depths(settings, compressed(values.astype(np.float32)), 1000 + 2.0**-14 * 4.5)
 
 
-# --- what is refused -------------------------------------------------------------------------------
+# --- what is refused ------------------------------------------------------------------------------
 
 
 def _refused(attempt: Callable[[], object], *texts: str) -> Outcome:
@@ -131,7 +131,7 @@ def _no_isovalue_later(settings: Settings) -> Outcome:
 
 
 def _hidden(cached: bool, settings: Settings) -> Outcome:
-    """NaN where there is to be a hole, in a ball and here and there: only cells of numbers have a surface."""
+    """NaN in a ball and here and there: only cells of numbers have a surface."""
     shape = (26, 31, 29)
     place = np.stack(coordinates(shape), axis=-1)
     hole = np.linalg.norm(place - (20.0, 12.0, 11.0), axis=-1) < 8
