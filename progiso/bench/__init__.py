@@ -1,4 +1,4 @@
-"""Benchmarks: what an image costs in time, memory and error, beside what users would pick instead.
+"""Benchmark time, memory and error of images, beside what users would pick instead.
 
 ``python -m progiso bench SET`` measures and writes ``results.json``, ``results.md`` and plots;
 ``python -m progiso bench report`` makes the last two of the first. What is measured is said in the

@@ -1,4 +1,4 @@
-"""Time and GPU memory over a sweep of memory budgets.
+"""Measure time and GPU memory over a sweep of memory budgets.
 
 The sweep goes down, by equal factors, from what the mapper takes by itself beside the compressed
 stream to the least that it can work with.
@@ -46,7 +46,7 @@ def measure_budget(field: Field, settings: Settings) -> dict[str, Any]:
 def _measure(
     field: Field, settings: Settings, budget: int
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """The orbit's images within a budget: a point, and the memory at the end."""
+    """Render the orbit within a budget; return a point, and the memory at the end."""
     _, images = render_orbit(field, settings, memory_budget=budget)
     about = [image["statistics"] for image in images]
     memories = [a["memory"] for a in about]

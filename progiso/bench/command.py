@@ -1,4 +1,4 @@
-"""``python -m progiso bench``: its options, and what it does with them."""
+"""Parse the options of ``progiso bench``, and run it."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ def _add_output(command: argparse.ArgumentParser, more: str = "") -> None:
 
 
 def _at_least(least: int) -> Callable[[str], int]:
-    """A type of option: whole numbers from `least` on."""
+    """Make a parser of whole numbers from `least` on."""
 
     def whole(text: str) -> int:
         if not text.isdecimal() or int(text) < least:

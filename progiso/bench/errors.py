@@ -1,4 +1,4 @@
-"""Depth error against run time, for every way to the same image.
+"""Measure depth error against run time, for every way to the same image.
 
 The reference is the double-precision caster over the *uncompressed* samples. The error of a ray
 is how far off its depth is, in voxels along the ray, where both hit; a ray that hits where the
@@ -79,7 +79,7 @@ def measure_errors(
 def of_one_image(
     field: Field, settings: Settings, measure: Callable[[], dict[str, Any]]
 ) -> dict[str, Any]:
-    """A record of the image of the first isovalue from the first position, where memory allows it.
+    """Measure the image of the first isovalue from the first position, if memory allows.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def of_one_image(
 
 
 def cast_uncompressed(field: Field, settings: Settings) -> Cast:
-    """The caster's image of the uncompressed samples, within the clipping planes of ProgIso's view.
+    """Cast the uncompressed samples, within the clipping planes of ProgIso's view.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def cast_uncompressed(field: Field, settings: Settings) -> Cast:
 
 
 class _Measurement:
-    """One image of one field by all peers."""
+    """Measures one image of one field by all peers."""
 
     def __init__(self, field: Field, settings: Settings) -> None:
         self._field, self._settings = field, settings
@@ -153,7 +153,7 @@ class _Measurement:
         }
 
     def _time(self, view: View) -> float:
-        """Median milliseconds of the view after its opposite; the view is rendered last."""
+        """Return the median milliseconds of the view, each after its opposite."""
         times: list[float] = []
         view.warm_up(self._camera)
         while not times or (len(times) < self._repeat and sum(times) < _ENOUGH_MS):
@@ -162,7 +162,7 @@ class _Measurement:
         return statistics.median(times)
 
     def _point(self, label: str, milliseconds: float, view: View) -> dict[str, Any]:
-        """A point of a series; keeps note of how exact the peer's depths are."""
+        """Make a point of a series, and record the resolution of the peer's depths."""
         depth, expected = view.depth(), self._expected
         self._resolution[view.label] = view.depth_resolution() * float(expected.voxels.max())
         return {

@@ -1,4 +1,4 @@
-"""What explicit extraction from the same compressed volume takes (the paper's BCMC).
+"""Measure what explicit extraction from the same compressed volume takes (the paper's BCMC).
 
 It decodes every block that holds the isovalue, with the neighbours that the block's dual grid
 reaches into, and makes the whole mesh, seen or not.
@@ -22,7 +22,7 @@ _SIDE = 4
 
 
 class BlockRanges:
-    """Value range of every block's dual grid.
+    """Holds the value range of every block's dual grid.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class BlockRanges:
         self._has_cells[cells] = True
 
     def count(self, isovalue: float) -> dict[str, int]:
-        """Count the blocks that an isovalue takes.
+        """Count the blocks that extraction of an isovalue decodes.
 
         Parameters
         ----------
@@ -63,7 +63,7 @@ class BlockRanges:
 
 
 def _over_blocks(plane: np.ndarray, pick: np.ufunc) -> np.ndarray:
-    """Extremes over the blocks of a plane and the samples one beyond."""
+    """Reduce a plane to extremes over its blocks and the samples one beyond."""
     for axis in range(2):
         starts = np.arange(0, plane.shape[axis], _SIDE)
         blocks = pick.reduceat(plane, starts, axis=axis)
@@ -75,7 +75,7 @@ def _over_blocks(plane: np.ndarray, pick: np.ufunc) -> np.ndarray:
 
 
 def measure_mesh(image: vtkImageData, isovalue: float) -> dict[str, Any]:
-    """Extract the mesh and see what it takes.
+    """Extract the mesh, and measure time and memory.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The volumes that are measured, by names that say all: ``gyroid-512-k12-r4``, ``ct-cranium``."""
+"""Make the measured volumes from names that say all: ``gyroid-512-k12-r4``, ``ct-cranium``."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Field:
 
     @property
     def name(self) -> str:
-        """What the field is asked for and reported by."""
+        """Return the name that asks for the field and reports it."""
         if self.volume in SCANS:
             return f"{self.volume}-r{self.rate:g}"
         x, y, z = self.dimensions
@@ -65,17 +65,17 @@ class Field:
 
     @property
     def voxels(self) -> int:
-        """Number of samples."""
+        """Return the number of samples."""
         return int(np.prod(self.dimensions, dtype=object))
 
     @property
     def blocks(self) -> int:
-        """Number of 4³ blocks."""
+        """Return the number of 4³ blocks."""
         return int(np.prod([-(-n // 4) for n in self.dimensions], dtype=object))
 
     @property
     def isovalues(self) -> tuple[float, ...]:
-        """Fixed isovalues, the most interesting first."""
+        """Return the fixed isovalues, the most interesting first."""
         if self.volume in SCANS:
             return tuple(map(float, SCANS[self.volume].isovalues.values()))
         return tuple(map(float, GENERATORS[self.volume].isovalues))
@@ -139,7 +139,7 @@ def parse_field(name: str) -> Field:
 
 
 def _frequency(name: str, volume: str, text: str | None) -> float | None:
-    """The parameter k of a generator, checked."""
+    """Parse and check the parameter k of a generator."""
     option = GENERATORS[volume].options.get("k")
     if text is None:
         return option.default if option else None
@@ -151,7 +151,7 @@ def _frequency(name: str, volume: str, text: str | None) -> float | None:
 
 
 def plain_path(field: Field) -> Path:
-    """File of the uncompressed volume, fetched or generated when it is not cached yet.
+    """Return the file of the uncompressed volume; fetch or generate it if it is not cached.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ def plain_path(field: Field) -> Path:
 
 
 def _options(field: Field) -> dict[str, Any]:
-    """Options of the field's generator."""
+    """Return the options of the field's generator."""
     return {} if field.k is None else {"k": field.k}
 
 
@@ -185,7 +185,7 @@ def _check_disk(needed: int, what: str) -> None:
 
 @lru_cache(maxsize=1)
 def plain(field: Field) -> vtkImageData:
-    """The uncompressed volume; a generated one is a memory map, not to be written to.
+    """Read the uncompressed volume; a generated one is a memory map, not to be written to.
 
     Parameters
     ----------
@@ -246,7 +246,7 @@ def save_compressed(field: Field, folder: str | os.PathLike[str]) -> Path:
 
 
 def decompressed(field: Field) -> vtkImageData:
-    """What the compressed volume holds, as float32 samples.
+    """Decompress the compressed volume to float32 samples.
 
     Parameters
     ----------
@@ -260,7 +260,7 @@ def decompressed(field: Field) -> vtkImageData:
 
 
 def gib(count: int) -> str:
-    """A number of bytes for people.
+    """Format a number of bytes in GiB.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What the project wants to reach, and whether a figure does.
+"""Judge measured figures by the project's goals.
 
 Every function takes measured figures and returns a `Verdict`, or None where no goal is set for
 that machine (see `machine.describe_machine`), field (its name, or its number of voxels) or image
@@ -66,7 +66,7 @@ class Verdict:
 
 
 def machine_kind(machine: dict[str, Any]) -> str | None:
-    """`literature.GPU` or `literature.SOFTWARE`; None for a machine that has no goals of its own.
+    """Return `literature.GPU` or `SOFTWARE`; None for a machine that has no goals of its own.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def machine_kind(machine: dict[str, Any]) -> str | None:
 
 
 def is_busy(machine: dict[str, Any], record: dict[str, Any]) -> bool:
-    """Whether others kept the machine so busy that a record's times tell little.
+    """Tell whether others kept the machine so busy that a record's times tell little.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def _on_gpu(machine: dict[str, Any], size: Sequence[int]) -> bool:
 def complete_image(
     machine: dict[str, Any], size: Sequence[int], voxels: int, mean_ms: float
 ) -> Verdict | None:
-    """Mean time of a complete image."""
+    """Judge the mean time of a complete image."""
     if not _on_gpu(machine, size):
         return None
     largest = PAPERS_LARGEST[0] * PAPERS_LARGEST[1] * PAPERS_LARGEST[2]
@@ -117,49 +117,49 @@ def complete_image(
 
 
 def first_pass(machine: dict[str, Any], size: Sequence[int], mean_ms: float) -> Verdict | None:
-    """Mean time to the first partial image."""
+    """Judge the mean time to the first partial image."""
     if not _on_gpu(machine, size):
         return None
     return _at_most("first pass, mean", mean_ms, FIRST_PASS_MS, milliseconds, f" ({GPU})")
 
 
 def file_to_image(machine: dict[str, Any], size: Sequence[int], ms: float) -> Verdict | None:
-    """Time from a file to the first image."""
+    """Judge the time from a file to the first image."""
     if not _on_gpu(machine, size):
         return None
     return _at_most("file to first image", ms, FILE_MS, milliseconds, f" ({GPU})")
 
 
 def moved(cold_ms: float, moved_ms: float) -> Verdict:
-    """Mean times of the cold image and after a move of two degrees."""
+    """Judge the mean time after a move of two degrees against that of the cold image."""
     limit = MOVED * cold_ms
     goal = f"≤ half of cold ({milliseconds(limit)})"
     return Verdict("move by 2°", milliseconds(moved_ms), goal, moved_ms <= limit)
 
 
 def time_exponent(value: float | None) -> Verdict | None:
-    """Exponent of time over voxels; None without one."""
+    """Judge the exponent of time over voxels; None without one."""
     return (
         None if value is None else _at_most("time over voxels, exponent", value, EXPONENT, number)
     )
 
 
 def per_block(value: float | None) -> Verdict | None:
-    """Bytes of GPU memory that a block more takes beside its payload; None without a figure."""
+    """Judge the bytes of GPU memory per block beside its stream; None without a figure."""
     if value is None:
         return None
     return _at_most("GPU bytes per block", value, BYTES_PER_BLOCK, number, timed=False)
 
 
 def per_pixel(value: float | None) -> Verdict | None:
-    """Bytes of GPU memory that a pixel more takes; None without a figure."""
+    """Judge the bytes of GPU memory per pixel; None without a figure."""
     if value is None:
         return None
     return _at_most("GPU bytes per pixel", value, BYTES_PER_PIXEL, number, timed=False)
 
 
 def beside_payload(memory: dict[str, Any]) -> Verdict:
-    """Memory of `protocol.measure_protocol`, all that is neither payload nor cache."""
+    """Judge the memory beside stream and cache, of `protocol.measure_protocol`."""
     limit = BYTES_PER_BLOCK * memory["blocks"] + BYTES_PER_PIXEL * memory["pixels"]
     note = f" ({BYTES_PER_BLOCK} a block, {BYTES_PER_PIXEL} a pixel)"
     what = "GPU memory beside payload and cache"
@@ -167,12 +167,12 @@ def beside_payload(memory: dict[str, Any]) -> Verdict:
 
 
 def within_budget(beside: int, budget: int) -> Verdict:
-    """GPU memory beside the compressed stream against the budget that was set."""
+    """Judge the GPU memory beside the compressed stream by the budget that was set."""
     return _at_most("GPU memory beside the stream", beside, budget, bytes_, timed=False)
 
 
 def memory_growth(what: str, key: str, bytes_per_frame: float | None) -> Verdict | None:
-    """Growth of a sort of memory, see `soak.measure_soak`; None without a figure."""
+    """Judge the growth of memory, see `soak.measure_soak`; None without a figure."""
     if bytes_per_frame is None:
         return None
     grown, limit = 1000 * bytes_per_frame, GROWTH[key]
@@ -181,7 +181,7 @@ def memory_growth(what: str, key: str, bytes_per_frame: float | None) -> Verdict
 
 
 def no_gl_errors(count: int) -> Verdict:
-    """OpenGL's errors of a long run."""
+    """Judge the number of OpenGL errors of a long run."""
     return Verdict("OpenGL errors", str(count), "none", count == 0, timed=False)
 
 
@@ -193,7 +193,7 @@ def against_mapper(
     ours_ms: float,
     mapper_ms: float,
 ) -> Verdict | None:
-    """Mean times of complete images, ours and of VTK's mapper."""
+    """Judge the mean time of complete images by that of VTK's mapper."""
     kind = machine_kind(machine)
     without_gpu = kind == SOFTWARE and field.startswith(FASTER_WITHOUT_GPU)
     large = kind == GPU and voxels >= LARGE
@@ -206,7 +206,7 @@ def against_mapper(
 def memory_against_mapper(
     machine: dict[str, Any], voxels: int, ours_bytes: int, mapper_bytes: int
 ) -> Verdict | None:
-    """Most GPU memory in use, ours and with VTK's mapper."""
+    """Judge the largest GPU memory by that with VTK's mapper."""
     if machine_kind(machine) != GPU or voxels < LARGE:
         return None
     limit = MEMORY * mapper_bytes
@@ -217,7 +217,7 @@ def memory_against_mapper(
 def against_paper(
     machine: dict[str, Any], field: str, size: Sequence[int], mean_ms: float
 ) -> list[Verdict]:
-    """Mean time of a complete image against the paper's implementation: a list of verdicts."""
+    """Judge the mean time of a complete image by the paper's implementation and its variant."""
     kind = machine_kind(machine)
     figure = literature(kind, field, size)
     if kind is None or figure is None:
@@ -239,7 +239,7 @@ def against_paper(
 def error_against_mapper(
     field: str, ours: Sequence[dict[str, Any]], mapper: dict[str, Any]
 ) -> Verdict | None:
-    """Whether some rate is faster than VTK's mapper at no larger mean depth error.
+    """Judge whether some rate is faster than VTK's mapper at no larger mean depth error.
 
     Parameters
     ----------

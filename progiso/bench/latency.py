@@ -1,4 +1,4 @@
-"""Cold images, small moves and first passes.
+"""Measure cold images, small moves and first passes.
 
 Cold, of a view
     The cache is emptied, so that nothing of the volume is decoded, and the complete image is

@@ -1,4 +1,4 @@
-"""Figures that were not measured in the run at hand.
+"""List figures from the literature, which were not measured in the run at hand.
 
 The paper's own implementation (WebGPU through Dawn on Vulkan), at our fields, three isovalues and
 its orbit of 10 positions: milliseconds to the complete image. ``strong`` is the same with its two
@@ -24,7 +24,7 @@ SOURCE = (
 
 @dataclass(frozen=True)
 class Figure:
-    """Time of the paper's implementation.
+    """Holds a time of the paper's implementation.
 
     Attributes
     ----------

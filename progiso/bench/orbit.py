@@ -1,4 +1,4 @@
-"""The run that most figures are of: around a volume, and again at the next isovalue."""
+"""Render a volume from an orbit of cameras at every isovalue, as most figures need."""
 
 from __future__ import annotations
 
@@ -47,5 +47,5 @@ def render_orbit(
 
 
 def times(images: list[dict[str, Any]]) -> list[float]:
-    """Milliseconds of the images of `render_orbit`, a list."""
+    """Return the milliseconds of the images of `render_orbit`."""
     return [image["ms"] for image in images]

@@ -1,4 +1,4 @@
-"""ProgIso beside what VTK has, in one process and one run.
+"""Measure ProgIso beside VTK's mapper and meshes, in one process and one run.
 
 Each peer opens its own window, renders, and closes it before the next one. ``first_ms`` is the
 first frame of a new window: upload, shaders, acceleration structures. ``later`` are the frames
@@ -69,28 +69,28 @@ def measure_peers(field: Field, settings: Settings) -> dict[str, Any]:
 def _measure(
     label: str, peer: Callable[..., dict[str, Any]], path: Path, field: Field, settings: Settings
 ) -> dict[str, Any]:
-    """One peer's row: its own figures and the memory it took."""
+    """Make a peer's row: its own figures and the memory it took."""
     gpu, peak = _Gpu(), PeakMemory()
     figures = peer(path, field, settings, gpu)
     return {"peer": label, **figures, "rss_bytes": peak.bytes(), "gpu_bytes": gpu.peak}
 
 
 class _Gpu:
-    """The most GPU memory seen in use, above what was in use at first."""
+    """Measures the most GPU memory in use, above what was in use at first."""
 
     def __init__(self) -> None:
         self._before = gpu_bytes()
         self.peak = None if self._before is None else 0
 
     def look(self) -> None:
-        """Look once; it takes some milliseconds, so not while something is timed."""
+        """Look once; it takes some milliseconds, so do not call it while something is timed."""
         used = gpu_bytes()
         if self.peak is not None and self._before is not None and used is not None:
             self.peak = max(self.peak, used - self._before)
 
 
 def _read(path: Path) -> tuple[vtkImageData, float]:
-    """Read a file; the image and the milliseconds that took."""
+    """Read a file, and return the image and the milliseconds it took."""
     start = perf_counter()
     image = read(path)
     return image, 1e3 * (perf_counter() - start)
@@ -118,7 +118,7 @@ def _measure_frames(
     settings: Settings,
     gpu: _Gpu,
 ) -> dict[str, Any]:
-    """First frame, and later ones at every isovalue from every position; closes the view."""
+    """Time the first frame and all later ones, then close the view."""
     cameras = settings.cameras(image)
     first, later = view.warm_up(cameras[-1]), []
     gpu.look()

@@ -1,4 +1,4 @@
-"""Plots of results, after the paper's figures and beyond."""
+"""Plot results, as in the paper's figures and beyond."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def _file(kind: str, record: dict[str, Any]) -> str:
 
 
 def _log(axis: Axis) -> None:
-    """Plain numbers on a logarithmic axis that is drawn already, few enough to be read."""
+    """Write few, plain numbers at a logarithmic axis that is drawn already."""
     low, high = axis.get_view_interval()
     steps = (1, 1.5, 2, 3, 4, 5, 7) if high < 10 * low else (1, 2, 5) if high < 999 * low else (1,)
     axis.set_major_locator(LogLocator(subs=steps, numticks=12))
@@ -88,7 +88,7 @@ def _log(axis: Axis) -> None:
 
 
 def _decade_below(values: Iterable[float]) -> float:
-    """Where logarithmic bars may begin."""
+    """Return where logarithmic bars may begin."""
     return 10.0 ** np.floor(np.log10(0.9 * min(values)))
 
 
@@ -147,7 +147,7 @@ def _draw_protocol(records: list[dict[str, Any]]) -> dict[str, Figure]:
 
 
 def _passes(record: dict[str, Any]) -> Figure:
-    """The paper's Figure 4: time and live rays per pass, with and without speculation."""
+    """Plot time and live rays per pass, with and without speculation (the paper's Figure 4)."""
     figure, (upper, lower) = _figure(7, 5, nrows=2, sharex=True)
     series = (("with", "with speculation", *_CYCLE[0]), ("without", "without", *_CYCLE[1]))
     for key, label, color, marker in series:
@@ -169,7 +169,7 @@ def _passes(record: dict[str, Any]) -> Figure:
 
 
 def _completeness(records: list[dict[str, Any]]) -> Figure:
-    """The paper's Figure 6: completed part of the image per pass."""
+    """Plot the completed part of the image per pass (the paper's Figure 6)."""
     figure, axes = _figure(7, 4)
     for record, (color, marker) in zip(records, _CYCLE * len(records)):
         rows = record["by_pass"]["with"]
@@ -186,7 +186,7 @@ def _completeness(records: list[dict[str, Any]]) -> Figure:
 
 
 def _active_blocks(records: list[dict[str, Any]]) -> Figure:
-    """The paper's Figure 8: blocks in use, ours against explicit extraction."""
+    """Plot blocks in use beside those of explicit extraction (the paper's Figure 8)."""
     figure, axes = _figure(8, 1.2 + 0.7 * len(records))
     smallest = []
     for i, record in enumerate(records):
@@ -272,7 +272,7 @@ def _draw_rates(records: list[dict[str, Any]]) -> dict[str, Figure]:
 
 
 def _line(points: list[dict[str, Any]]) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
-    """The points of a series that one setting tells apart, and those that stand alone."""
+    """Split a series into the points along one setting and those that stand alone."""
     line = [point for point in points if point["label"] != DEFAULT_DISTANCE]
     return line, [point for point in points if point["label"] == DEFAULT_DISTANCE]
 

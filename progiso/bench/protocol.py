@@ -1,4 +1,4 @@
-"""The paper's evaluation (its section 5): random isovalues, each seen from an orbit of cameras.
+"""Run the paper's evaluation (section 5): random isovalues from an orbit of cameras.
 
 Three runs over the same images (see `orbit`), one after the other: for the times, with nothing
 else measured; for the counts of blocks; and without speculation.
@@ -72,7 +72,7 @@ def _passes(images: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _table2(images: list[dict[str, Any]], blocks: int, size: tuple[int, int]) -> dict[str, float]:
-    """The columns of the paper's Table 2, and the time of a pass."""
+    """Compute the columns of the paper's Table 2."""
     passes, pixels = _passes(images), size[0] * size[1]
     speculation = [p["speculation"] for p in passes]
     return {
@@ -88,7 +88,7 @@ def _mean(values: Sequence[float]) -> float:
 
 
 def _memory(memories: list[dict[str, Any]], field: Field, settings: Settings) -> dict[str, Any]:
-    """The mapper's memory: means over the images, and the largest."""
+    """Summarize the mapper's memory: means over the images, and the largest."""
     totals = [memory["total"] for memory in memories]
     return {
         "total_mean": _mean(totals),
@@ -102,7 +102,7 @@ def _memory(memories: list[dict[str, Any]], field: Field, settings: Settings) ->
 
 
 def _by_pass(images: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Means by pass number: time over the images that have such a pass, the rest over all."""
+    """Average by pass number: time over the images that have such a pass, the rest over all."""
     passes = [image["statistics"]["passes"] for image in images]
     longest = max(len(series) for series in passes)
     rows = []
@@ -123,13 +123,13 @@ def _by_pass(images: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _elapsed(series: list[dict[str, Any]]) -> float:
-    """Milliseconds of the last of some passes."""
+    """Return the milliseconds of the last of some passes."""
     before = series[-2]["elapsed_ms"] if len(series) > 1 else 0.0
     return series[-1]["elapsed_ms"] - before
 
 
 def _stages(images: list[dict[str, Any]]) -> dict[str, float]:
-    """Mean milliseconds of an image's stages, over all images."""
+    """Average the milliseconds of an image's stages over all images."""
     shares = [stage_times(image) for image in images]
     names = dict.fromkeys(name for share in shares for name in share)
     return {name: sum(share.get(name, 0.0) for share in shares) / len(shares) for name in names}
@@ -147,7 +147,7 @@ def _moved_bytes(images: list[dict[str, Any]], rate: float, size: tuple[int, int
 
 
 def _active(images: list[dict[str, Any]], blocks: int) -> dict[str, list[float]]:
-    """Active blocks of each image, in percent of the volume's: mean and largest over its passes."""
+    """Compute each image's active blocks in percent: mean and largest over its passes."""
     shares = [[100 * p["active_blocks"] / blocks for p in image["passes"]] for image in images]
     return {
         "mean_percent": [_mean(series) for series in shares],
@@ -156,7 +156,7 @@ def _active(images: list[dict[str, Any]], blocks: int) -> dict[str, list[float]]
 
 
 def _measure_explicit(field: Field, settings: Settings) -> dict[str, Any]:
-    """Blocks that explicit extraction decodes at every isovalue, and meshes at some."""
+    """Count the blocks that explicit extraction decodes, and make meshes at some isovalues."""
     if settings.no_mesh_of(field):
         return {"left_out": settings.no_mesh_of(field)}
     needed, available = int(_EXTRACTION_VOLUMES * 4 * field.voxels), available_bytes()

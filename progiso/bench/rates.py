@@ -1,4 +1,4 @@
-"""What a rate costs: errors of samples and depths, missed and invented rays, topology.
+"""Measure what a rate costs: errors of samples and depths, wrong rays, topology.
 
 All is held against the uncompressed samples: depths against the double-precision caster, the
 topology of FlyingEdges' mesh against that of the mesh without compression.
@@ -80,7 +80,7 @@ def _point(
 
 
 def _sample_errors(decoded: np.ndarray, values: np.ndarray) -> dict[str, float]:
-    """Largest and root mean square error of the samples, slice by slice."""
+    """Compute the largest and the root mean square error of the samples, slice by slice."""
     largest, squares = 0.0, 0.0
     for ours, theirs in zip(decoded, values):
         off = np.abs(ours - theirs.astype(float))

@@ -1,4 +1,4 @@
-"""Results as Markdown: every figure beside its goal."""
+"""Write results as Markdown, every figure beside its goal."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def write_markdown(
 
 
 def markdown(document: dict[str, Any], plots: dict[str, list[str]]) -> str:
-    """Results as Markdown; parameters as in `write_markdown`.
+    """Make Markdown of results; parameters as in `write_markdown`.
 
     Returns
     -------
@@ -69,28 +69,28 @@ def markdown(document: dict[str, Any], plots: dict[str, list[str]]) -> str:
 
 
 class _Report:
-    """The machine, and all verdicts so far."""
+    """Collects the verdicts on a machine."""
 
     def __init__(self, machine: dict[str, Any]) -> None:
         self.machine = machine
         self.verdicts: list[tuple[dict[str, Any], goals.Verdict]] = []
 
     def goal(self, record: dict[str, Any], *verdicts: goals.Verdict | None) -> str:
-        """A cell that judges figures; None among the verdicts are figures without a goal."""
+        """Make a cell that judges figures; None among the verdicts are figures without a goal."""
         found = [verdict for verdict in verdicts if verdict is not None]
         self.verdicts += [(record, verdict) for verdict in found]
         texts = (f"{verdict.goal}: {self.judge(record, verdict)}" for verdict in found)
         return "; ".join(texts) or _NO_GOAL
 
     def judge(self, record: dict[str, Any], verdict: goals.Verdict) -> str:
-        """What is said of a goal: times that other processes disturbed are not judged."""
+        """Tell whether a goal is met; times that other processes disturbed are not judged."""
         if verdict.timed and goals.is_busy(self.machine, record):
             return _NOT_JUDGED
         return _MET if verdict.met else "**not met**"
 
 
 def _of(record: dict[str, Any]) -> str:
-    """What a record is of."""
+    """Tell what a record is of."""
     name = record.get("field") or f"gyroid, {_surface(record)}"
     return f"{name}, {pixels(record['size'])}"
 
@@ -116,7 +116,7 @@ def _heading(document: dict[str, Any]) -> list[str]:
 
 
 def _about_times(document: dict[str, Any]) -> list[str]:
-    """What times are, and whether they can be relied on; nothing where there are none."""
+    """Tell what times are, and whether they can be relied on; nothing where there are none."""
     measured = document["measurements"]
     records = [r for kind, records in measured.items() if kind not in _UNTIMED for r in records]
     if not records:
@@ -298,7 +298,7 @@ def _table2(records: list[dict[str, Any]]) -> list[str]:
 
 
 def _stages(report: _Report, records: list[dict[str, Any]]) -> list[str]:
-    """Where the time goes, the longest stage of all first."""
+    """Tabulate the times of stages, the longest first."""
     names = dict.fromkeys(name for record in records for name in record["stage_ms"])
     if not names:
         return []
@@ -536,7 +536,7 @@ def _rate_table(record: dict[str, Any]) -> list[str]:
 
 
 def _part(value: float, whole: float) -> str:
-    """A part of a whole, short."""
+    """Format a part of a whole."""
     return f"{value / whole:.1e}" if value else "0"
 
 

@@ -1,4 +1,4 @@
-"""Time over image size and over volume size.
+"""Measure time over image size and over volume size.
 
 A series of volumes is one gyroid sampled more and more finely: with the same surface at every size
 (k fixed), and with one that grows with the volume (k in proportion to the side). The images' size
@@ -113,14 +113,14 @@ def _gyroid(dimensions: tuple[int, int, int], grows: bool) -> Field:
 
 
 def _measure(field: Field, settings: Settings) -> dict[str, Any]:
-    """Times of the orbit's images, and bytes of GPU memory beside payload and cache."""
+    """Measure the orbit's times, and GPU memory beside stream and cache."""
     _, images = render_orbit(field, settings)
     memory = images[-1]["statistics"]["memory"]
     return {"time": summary(times(images)), "other_bytes": other_bytes(memory)}
 
 
 def exponent(x: Sequence[float], y: Sequence[float]) -> float | None:
-    """Exponent of the power law that fits best.
+    """Return the exponent of the power law that fits best.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def exponent(x: Sequence[float], y: Sequence[float]) -> float | None:
 
 
 def slope(x: Sequence[float], y: Sequence[float]) -> float | None:
-    """Slope of the line that fits best.
+    """Return the slope of the line that fits best.
 
     Parameters
     ----------

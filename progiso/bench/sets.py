@@ -1,4 +1,4 @@
-"""The named sets: which measurements they are made of, and on which fields."""
+"""Name the sets: which measurements they are made of, and on which fields."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Step = tuple[str, str, Callable[[], dict[str, Any]]]
 
 @dataclass(frozen=True)
 class Defaults:
-    """What a set does unless told otherwise.
+    """Holds a set's defaults.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ _QUICK_RATES, _QUICK_DISTANCES = (2.0, 4.0, 8.0, 16.0), (0.25, 0.5, 1.0)
 
 
 def steps(name: str, fields: Sequence[str], settings: Settings) -> list[Step]:
-    """The measurements of a set, in order.
+    """List the measurements of a set, in order.
 
     Parameters
     ----------

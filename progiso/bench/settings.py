@@ -1,4 +1,4 @@
-"""What was asked for, shared by all measurements."""
+"""Hold the options of a run, which all measurements share."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PEERS = "peers"
 
 @dataclass(frozen=True)
 class Settings:
-    """Options of a run.
+    """Holds the options of a run.
 
     Attributes
     ----------
@@ -54,22 +54,22 @@ class Settings:
     frames: int = 10_000
 
     def isovalues_of(self, field: Field) -> list[float]:
-        """The isovalues that a field is rendered at, a list of float."""
+        """Return the isovalues that a field is rendered at."""
         if isinstance(self.isovalues, str):
             return list(field.isovalues)
         return field.random_isovalues(self.isovalues, self.seed)
 
     def no_mesh_of(self, field: Field) -> str | None:
-        """Why no mesh is made of a field; None where one is."""
+        """Return the reason why no mesh is made of a field; None where one is made."""
         large = self.largest_mesh is not None and max(field.dimensions) > self.largest_mesh
         return f"no meshes of volumes larger than {self.largest_mesh}" if large else None
 
     def cameras(self, image: vtkImageData) -> list[Camera]:
-        """The orbit's cameras around an image, a list of `progiso.Camera`."""
+        """Return the orbit's cameras around an image."""
         return [orbit_camera(image, i, self.positions) for i in range(self.positions)]
 
     def heading(self, field: Field) -> dict[str, Any]:
-        """What every record begins with: the field and how it was seen."""
+        """Make what every record begins with: the field and how it was seen."""
         return {
             "field": field.name,
             "size": list(self.size),

@@ -1,4 +1,4 @@
-"""Long use: thousands of random changes, and the memory that they leave behind.
+"""Render thousands of random changes, and measure the memory that they leave behind.
 
 Every frame moves the camera and changes the isovalue; now and then the size of the image, what the
 surface looks like, the memory budget, the volume or its colours change, the cache is emptied, the
@@ -105,7 +105,7 @@ def measure_soak(field: Field, settings: Settings) -> dict[str, Any]:
 
 
 def growth(samples: dict[str, Any], key: str, warm_up: int) -> float | None:
-    """Slope of a column of samples after the warm-up: the median of those between all its pairs.
+    """Return the median slope between all pairs of samples after the warm-up.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def growth(samples: dict[str, Any], key: str, warm_up: int) -> float | None:
 
 @contextmanager
 def _gl_errors_counted() -> Iterator[None]:
-    """Have mappers that are made meanwhile count OpenGL's errors."""
+    """Let mappers that are made meanwhile count OpenGL errors."""
     before = os.environ.get("PROGISO_GL_DEBUG")
     os.environ["PROGISO_GL_DEBUG"] = "1"
     try:
@@ -150,7 +150,7 @@ def _gl_errors_counted() -> Iterator[None]:
 
 
 class _Walk:
-    """A view, and the random changes that are made to it."""
+    """Makes random changes to a view."""
 
     def __init__(self, field: Field, size: tuple[int, int], seed: int) -> None:
         self._random = np.random.default_rng(seed)
@@ -174,7 +174,7 @@ class _Walk:
         self._warm_up()
 
     def _make_obstacle(self) -> vtkActor:
-        """A ball in the middle of the volume."""
+        """Make a ball in the middle of the volume."""
         source, mapper, actor = vtkSphereSource(), vtkPolyDataMapper(), vtkActor()
         radius = np.linalg.norm(np.subtract(self._rest.position, self._rest.focal_point))
         source.SetCenter(self._rest.focal_point)
@@ -213,7 +213,7 @@ class _Walk:
         self._peak = max(self._peak, self.view.mapper.GetStatistics().GetTotalBytes())
 
     def sample(self, frame: int) -> dict[str, Any]:
-        """Return to rest, and look at the memory: a row of `measure_soak`'s samples."""
+        """Return to rest, and measure the memory: a row of `measure_soak`'s samples."""
         self._change_rest()
         self.view.render_from(self._rest)
         resting = self.view.mapper.GetStatistics().GetTotalBytes()
@@ -228,14 +228,14 @@ class _Walk:
         }
 
     def close(self) -> int:
-        """Give everything back; return the OpenGL errors of all mappers."""
+        """Free everything; return the OpenGL errors of all mappers."""
         for prop in (self.view.prop, self._keeper):
             self._errors += prop.GetMapper().GetNumberOfGLErrors()
         self.view.close()
         return self._errors
 
     def _random_camera(self) -> Camera:
-        """Somewhere around the volume, or in it."""
+        """Place a camera around the volume, or in it."""
         direction = self._random.normal(size=3)
         offset = np.subtract(self._rest.position, self._rest.focal_point)
         distance = np.linalg.norm(offset) * self._random.uniform(0.1, 1.5)

@@ -1,4 +1,4 @@
-"""What is said of a series of times."""
+"""Summarize a series of times."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 
 def summary(milliseconds: Sequence[float]) -> dict[str, Any]:
-    """Median, mean and extremes of times.
+    """Compute median, mean and extremes of times.
 
     Parameters
     ----------

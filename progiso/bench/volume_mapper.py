@@ -1,4 +1,4 @@
-"""VTK's isosurface mapper in a view: vtkGPUVolumeRayCastMapper in isosurface blend mode."""
+"""Show a volume by vtkGPUVolumeRayCastMapper in isosurface blend mode."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class VolumeMapper(View):
         self.prop.GetProperty().GetIsoSurfaceValues().SetValue(0, isovalue)
 
     def depth(self) -> np.ndarray:
-        """Render once more; distances along the rays, see `DepthRange.read`."""
+        """Render once more, and read the distances along the rays."""
         depths = DepthRange.of(self)
         hit = "progisoHit.x >= 0.0"
         replacements = {
@@ -74,12 +74,12 @@ class VolumeMapper(View):
         return depths.read(self)
 
     def depth_resolution(self) -> float:
-        """Resolution of `depth` in world units."""
+        """Return the resolution of `depth` in world units."""
         return DepthRange.of(self).resolution
 
 
 def _opaque_property(image: vtkImageData, isovalue: float) -> vtkVolumeProperty:
-    """White, shaded and opaque at every value."""
+    """Make a property that is white, shaded and opaque at every value."""
     low, high = image.GetScalarRange()
     color, opacity = vtkColorTransferFunction(), vtkPiecewiseFunction()
     color.AddRGBPoint(low, 1.0, 1.0, 1.0)

@@ -23,7 +23,7 @@ __all__ = ["GENERATORS", "SCANS", "cache_folder", "compressed", "fetch"]
 
 
 def cache_folder() -> Path:
-    """Folder where volumes are kept, created when it is missing.
+    """Return the folder where volumes are kept, and create it when it is missing.
 
     Returns
     -------

@@ -122,7 +122,7 @@ def _run(command: Sequence[str], folder: Path) -> subprocess.CompletedProcess[st
 
 
 def _check(path: Path, scan: Scan) -> None:
-    """Measurements must be of the same data everywhere."""
+    """Check that a file is the expected one, so that all measure the same data."""
     if not path.is_file():
         raise RuntimeError(f"the Debian package {scan.package} no longer holds {scan.member}")
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
@@ -131,7 +131,7 @@ def _check(path: Path, scan: Scan) -> None:
 
 
 def _read_invesalius(path: Path) -> vtkImageData:
-    """Image of an InVesalius project: a tar.gz of a property list and raw samples."""
+    """Read an InVesalius project: a tar.gz of a property list and raw samples."""
     with tarfile.open(path) as archive:
         members = {Path(m.name).name: m for m in archive.getmembers() if m.isfile()}
         project = plistlib.loads(_member(archive, members["main.plist"]))

@@ -166,7 +166,7 @@ def generate_compressed(
 def _sampled(
     generator: Generator, size: int | Sequence[int], options: dict[str, float]
 ) -> tuple[str, tuple[int, int, int], Slices]:
-    """A field's name with its options, its dimensions, and the function that computes a slice."""
+    """Return a field's name with its options, its dimensions, and what computes its slices."""
     dimensions = checked_dimensions(size)
     options = _checked_options(generator, options)
     given = (f"{key}{_digits(v)}" for key, v in sorted(options.items()) if v is not None)
@@ -175,7 +175,7 @@ def _sampled(
 
 
 def checked_dimensions(size: int | Sequence[int]) -> tuple[int, int, int]:
-    """Three sides from one number or three, each at least 2.
+    """Return three sides, each at least 2, from one number or three.
 
     Examples
     --------
@@ -190,13 +190,13 @@ def checked_dimensions(size: int | Sequence[int]) -> tuple[int, int, int]:
 
 
 def _digits(value: float) -> str:
-    """A number in as few characters as tell it from all others."""
+    """Format a number in the fewest characters that identify it."""
     short = f"{value:g}"
     return short if float(short) == value else repr(value)
 
 
 def _checked_options(generator: Generator, given: dict[str, float]) -> dict[str, Any]:
-    """Defaults filled in, ranges checked."""
+    """Fill in defaults and check ranges."""
     values = {key: option.default for key, option in generator.options.items()}
     for key, value in given.items():
         if key not in values:
@@ -213,14 +213,14 @@ def _checked_options(generator: Generator, given: dict[str, float]) -> dict[str,
 
 
 def _sphere(axes: Axes) -> Slices:
-    """Distance from the centre."""
+    """Compute the distance from the centre."""
     x, y, z = axes
     plane = x[None, :] ** 2 + y[:, None] ** 2
     return lambda k: np.sqrt(plane + z[k] ** 2)
 
 
 def _marschner_lobb(axes: Axes, k: float, alpha: float) -> Slices:
-    """The signal of Marschner and Lobb (1994); `k` is its frequency f_M."""
+    """Compute the signal of Marschner and Lobb (1994); `k` is its frequency f_M."""
     x, y, z = axes
     radius = np.sqrt(x[None, :] ** 2 + y[:, None] ** 2)
     ripple = alpha * (1 + np.cos(2 * np.pi * k * np.cos(np.pi * radius / 2)))
@@ -231,7 +231,7 @@ def _marschner_lobb(axes: Axes, k: float, alpha: float) -> Slices:
 
 
 def _gyroid(axes: Axes, k: float, seed: int) -> Slices:
-    """sin x cos y + sin y cos z + sin z cos x over w = πk, plus 0.35 (N16 + N32/2 + N64/4)."""
+    """Compute a gyroid of angular frequency πk plus 0.35 (N16 + N32/2 + N64/4) of noise."""
     x, y, z = (np.pi * k * a for a in axes)
     sin_x, cos_x, sin_y, cos_y = np.sin(x), np.cos(x), np.sin(y), np.cos(y)
     noise = _value_noise(axes, ((16, 0.35), (32, 0.175), (64, 0.0875)), seed)
@@ -247,7 +247,7 @@ def _gyroid(axes: Axes, k: float, seed: int) -> Slices:
 
 
 def _value_noise(axes: Axes, octaves: Sequence[tuple[int, float]], seed: int) -> Slices:
-    """Weighted sum of value noise on lattices of (cells + 1)³ standard normals.
+    """Sum weighted value noise on lattices of (cells + 1)³ standard normals.
 
     The lattices are drawn one after the other, z slowest. Interpolation along an axis is a sparse
     product, so a slice takes one dense product of what is left of all octaves.
@@ -265,7 +265,7 @@ def _value_noise(axes: Axes, octaves: Sequence[tuple[int, float]], seed: int) ->
 
 
 def _fade_weights(axis: np.ndarray, cells: int) -> np.ndarray:
-    """Matrix that interpolates values at cell corners at the coordinates, by a quintic fade."""
+    """Make the matrix that interpolates from cell corners to coordinates by a quintic fade."""
     position = (axis + 1) / 2 * cells
     cell = np.minimum(position.astype(int), cells - 1)
     t = position - cell
@@ -281,7 +281,7 @@ def _fade_weights(axis: np.ndarray, cells: int) -> np.ndarray:
 def _waves(
     axes: Axes, vectors: np.ndarray, amplitudes: np.ndarray, random: np.random.Generator
 ) -> Slices:
-    """Sum of cosine waves of random phase; `vectors` are in periods per volume side."""
+    """Sum cosine waves of random phase; `vectors` are in periods per volume side."""
     x, y, z = (np.pi * np.outer(a, v) for a, v in zip(axes, vectors.T))
     phases = random.uniform(0, 2 * np.pi, len(vectors))
     along_x = np.vstack([np.cos(x).T, np.sin(x).T])
@@ -294,13 +294,13 @@ def _waves(
 
 
 def _directions(random: np.random.Generator, count: int) -> np.ndarray:
-    """Unit vectors, uniform on the sphere."""
+    """Draw unit vectors, uniform on the sphere."""
     vectors = random.standard_normal((count, 3))
     return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
 def _turbulence(axes: Axes, k: float | None, exponent: float, modes: int, seed: int) -> Slices:
-    """Random waves with energy spectrum E(k) ~ k^-exponent, in standard deviations.
+    """Sum random waves of energy spectrum E(k) ~ k^-exponent, in standard deviations.
 
     As in Kraichnan's synthetic turbulence: the wave numbers are spaced evenly in log k from one
     period per side to `k`, each with the energy E(k) dk of its share.
@@ -314,7 +314,7 @@ def _turbulence(axes: Axes, k: float | None, exponent: float, modes: int, seed: 
 
 
 def _porous(axes: Axes, k: float, porosity: float, noise: float, modes: int, seed: int) -> Slices:
-    """A scan of a porous solid: two grey levels 0 and 1, soft edges, and noise in every sample.
+    """Imitate a scan of a porous solid: grey levels 0 and 1, soft edges, noise everywhere.
 
     The pores are where random waves of about `k` periods per side stay below a threshold.
     """
@@ -335,7 +335,7 @@ def _porous(axes: Axes, k: float, porosity: float, noise: float, modes: int, see
 
 
 def _normal_quantile(fraction: float) -> float:
-    """Where the standard normal distribution reaches a fraction."""
+    """Return where the standard normal distribution reaches a fraction."""
     return NormalDist().inv_cdf(fraction)
 
 

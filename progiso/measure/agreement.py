@@ -1,4 +1,4 @@
-"""How far depths are off the caster's: the one definition of agreement, for tests and tables."""
+"""Define once, for tests and tables, how well depths agree with the caster's."""
 
 from __future__ import annotations
 
@@ -37,18 +37,18 @@ class Agreement:
 
     @property
     def wrong(self) -> np.ndarray:
-        """Where depths are off by more than is allowed."""
+        """Mark the rays whose depths are off by more than is allowed."""
         return ~(self.error <= self.allowed)
 
     @property
     def worst(self) -> tuple[float, float]:
-        """Error and what is allowed, of the ray that comes closest to it or is farthest beyond."""
+        """Return the error and the allowed error of the ray with the largest ratio of the two."""
         at = np.argmax(self.error / self.allowed)
         return float(self.error.flat[at]), float(self.allowed.flat[at])
 
 
 def compare(depth: np.ndarray, expected: Cast) -> Agreement:
-    """Hold depths against the caster's.
+    """Compare depths with the caster's, given what rounding may do.
 
     A depth must lie between the first possible and the first certain crossing, and be a hit if one
     is certain. Where the two are close it must be the caster's hit.
@@ -84,19 +84,19 @@ def compare(depth: np.ndarray, expected: Cast) -> Agreement:
 
 
 def _part(chosen: np.ndarray, among: np.ndarray) -> float:
-    """Part of some rays that is chosen; 0 of none."""
+    """Return the fraction of some rays that is chosen; 0 of no rays."""
     return float(np.mean(chosen[among])) if among.any() else 0.0
 
 
 def _difference(a: np.ndarray, b: np.ndarray, where: np.ndarray) -> np.ndarray:
-    """a - b, and zero elsewhere: infinities need not meet there."""
+    """Return a - b, and zero elsewhere, so that no infinities are subtracted there."""
     return np.subtract(a, b, out=np.zeros(np.shape(a)), where=where)
 
 
 def depth_error(
     depth: np.ndarray, expected: np.ndarray, voxels: np.ndarray
 ) -> dict[str, float | None]:
-    """Compare depths with the caster's.
+    """Summarize the differences from the caster's depths.
 
     Parameters
     ----------

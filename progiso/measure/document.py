@@ -1,4 +1,4 @@
-"""The results as JSON: made, kept up to date while it is measured, read and merged."""
+"""Make, save, read and merge results, as JSON."""
 
 from __future__ import annotations
 
@@ -147,6 +147,6 @@ def merge(documents: Sequence[dict[str, Any]]) -> dict[str, Any]:
 
 
 def _identity(record: dict[str, Any]) -> str:
-    """What makes a record a measurement of the same thing as another."""
+    """Return a key that is equal for two measurements of the same thing."""
     keys = ("field", "size", "fixed_isovalues", "grows")
     return json.dumps([record.get(key) for key in keys])

@@ -1,4 +1,4 @@
-"""ProgIso's mapper in a view: the one place that the benchmarks use its settings in."""
+"""Show a volume by ProgIso's mapper; all of its settings for benchmarks are here."""
 
 from __future__ import annotations
 
@@ -64,36 +64,36 @@ class Isosurface(View):
         self.mapper.SetMaximumPassesPerRender(count)
 
     def converged(self) -> bool:
-        """Whether the last image is complete."""
+        """Tell whether the last image is complete."""
         return self.mapper.GetConverged()
 
     def statistics(self) -> dict[str, Any]:
-        """`progiso.statistics` of the last image."""
+        """Return `progiso.statistics` of the last image."""
         return statistics(self.mapper, self.renderer)
 
     def depth(self) -> np.ndarray:
-        """`progiso.depth` of the last image."""
+        """Return `progiso.depth` of the last image."""
         return depth(self.mapper)
 
     def depth_resolution(self) -> float:
-        """Resolution of `depth` in world units: that of float32 where it is largest."""
+        """Return the resolution of the largest depth in world units, which is float32's."""
         distances = self.depth()
         return float(np.spacing(distances[np.isfinite(distances)].max(initial=0.0)))
 
 
 def cache_bytes(memory: dict[str, Any]) -> int:
-    """Bytes of the block cache in ``statistics()["memory"]``."""
+    """Sum the bytes of the block cache in ``statistics()["memory"]``."""
     buffers = memory["buffers"].items()
     return sum(count for name, count in buffers if name.startswith(CACHE_PREFIX))
 
 
 def other_bytes(memory: dict[str, Any]) -> int:
-    """Bytes beside the compressed stream and the block cache in ``statistics()["memory"]``."""
+    """Sum all but the stream and the block cache in ``statistics()["memory"]``."""
     return memory["total"] - memory["compressed"] - cache_bytes(memory)
 
 
 def stage_times(about: dict[str, Any]) -> dict[str, float]:
-    """Milliseconds of every stage over the passes of an image, of a ``detailed`` view's statistics.
+    """Return the milliseconds of every stage of an image, from a ``detailed`` view's statistics.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What was measured on, and how much memory is in use."""
+"""Describe the machine, and tell how much memory is in use and how busy others are."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def machine_in_words(machine: dict[str, Any]) -> str:
 
 
 def _cpu() -> str:
-    """The processor's model."""
+    """Return the processor's model."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:
@@ -98,7 +98,7 @@ def _cpu() -> str:
 
 
 def _capability(report: str, key: str) -> str:
-    """A line of VTK's report of an OpenGL context."""
+    """Return the value of a line in VTK's report of an OpenGL context."""
     values = [line.split(":", 1)[1].strip() for line in report.splitlines() if line.startswith(key)]
     if not values:
         raise RuntimeError(
@@ -109,7 +109,7 @@ def _capability(report: str, key: str) -> str:
 
 
 def _output(*command: str) -> str | None:
-    """What a command prints; None where it is missing or fails."""
+    """Return what a command prints; None where it is missing or fails."""
     if shutil.which(command[0]) is None:
         return None
     done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -117,13 +117,13 @@ def _output(*command: str) -> str | None:
 
 
 def _nvidia_smi(query: str) -> str | None:
-    """A figure of the first GPU, as VTK's EGL windows use it; None without NVIDIA's tool."""
+    """Ask for a property of the first GPU, which EGL windows use; None without nvidia-smi."""
     text = _output("nvidia-smi", f"--query-gpu={query}", "--format=csv,noheader,nounits", "--id=0")
     return text or None
 
 
 def gpu_bytes() -> int | None:
-    """GPU memory in use by all processes.
+    """Return the GPU memory in use by all processes.
 
     Returns
     -------
@@ -135,7 +135,7 @@ def gpu_bytes() -> int | None:
 
 
 def resident_bytes() -> int:
-    """Main memory that this process holds now, after what it can give back is given back.
+    """Free what can be freed, then return the main memory that this process holds.
 
     Returns
     -------
@@ -146,7 +146,7 @@ def resident_bytes() -> int:
 
 
 def available_bytes() -> int:
-    """Main memory that is free or can be freed.
+    """Return the main memory that is free or can be freed.
 
     Returns
     -------
@@ -159,7 +159,7 @@ def available_bytes() -> int:
 
 
 class PeakMemory:
-    """Peak of the process's resident memory, above what it held when this was made.
+    """Measures the peak of the process's resident memory above what it held at first.
 
     Examples
     --------
@@ -180,18 +180,18 @@ class PeakMemory:
             self._before = _status("VmRSS")
 
     def bytes(self) -> int | None:
-        """Bytes of the peak so far; None where the system does not let it be measured."""
+        """Return the peak so far; None where the system does not let it be measured."""
         return None if self._before is None else _status("VmHWM") - self._before
 
 
 def _status(key: str) -> int:
-    """A figure of this process, in bytes."""
+    """Return a line of this process's status, in bytes."""
     lines = _STATUS.read_text(encoding="ascii").splitlines()
     return next(int(line.split()[1]) * 1024 for line in lines if line.startswith(f"{key}:"))
 
 
 class OtherProcesses:
-    """How busy others keep the machine from now on: what is timed meanwhile is only as good.
+    """Measures how busy other processes keep the machine, which makes times longer.
 
     Counted are other processes, and what a virtual machine's host takes from it.
 
@@ -205,7 +205,7 @@ class OtherProcesses:
         self._start, self._before = time.monotonic(), _seconds_of_others()
 
     def cores(self) -> float | None:
-        """Cores that were busy for others, in the mean; None where the system does not tell."""
+        """Return how many cores others kept busy on average; None where that is unknown."""
         elapsed = time.monotonic() - self._start
         busy = _seconds_of_others()
         if self._before is None or busy is None or elapsed <= 0:
@@ -215,7 +215,7 @@ class OtherProcesses:
 
 
 def _seconds_of_others() -> float | None:
-    """Processor time of all but this process and its children; None where it cannot be read."""
+    """Return the processor time of other processes; None where it cannot be read."""
     try:
         line = _PROCESSORS.read_text(encoding="ascii").splitlines()[0]
     except OSError:

@@ -1,4 +1,4 @@
-"""Explicit extraction in a view: vtkFlyingEdges3D, and the triangles rasterised."""
+"""Extract a mesh by vtkFlyingEdges3D, and show it."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def extract(
 
 
 def mesh_bytes(mesh: vtkPolyData) -> int:
-    """Main memory that a mesh takes, in bytes."""
+    """Return the main memory that a mesh takes, in bytes."""
     return _VTK_KIB * mesh.GetActualMemorySize()
 
 
@@ -78,7 +78,7 @@ class Mesh(View):
         super().__init__(prop, size)
 
     def depth(self) -> np.ndarray:
-        """Render once more; distances along the rays, see `DepthRange.read`."""
+        """Render once more, and read the distances along the rays."""
         depths = DepthRange.of(self)
         tag, code = "//VTK::Light::Impl", depths.glsl("length(vertexVC.xyz)")
         shader = self.prop.GetShaderProperty()
@@ -88,5 +88,5 @@ class Mesh(View):
         return depths.read(self)
 
     def depth_resolution(self) -> float:
-        """Resolution of `depth` in world units."""
+        """Return the resolution of `depth` in world units."""
         return DepthRange.of(self).resolution

@@ -1,4 +1,4 @@
-"""Distances along the rays of what VTK draws, more exactly than its depth buffer tells.
+"""Read distances along the rays from what VTK draws, finer than its depth buffer.
 
 A fragment shader writes the distance from the eye into the 24 bits of the pixel's colour, evenly
 over the range that the prop lies in. A depth buffer of 24 bits crowds its steps at the near
@@ -47,7 +47,7 @@ class DepthRange:
 
     @classmethod
     def of(cls, view: View) -> DepthRange:
-        """Range of the sphere about a view's prop."""
+        """Make the range of the sphere around a view's prop."""
         camera = view.renderer.GetActiveCamera()
         low, high = np.reshape(view.prop.GetBounds(), (3, 2)).T
         radius = np.linalg.norm(high - low) / 2
@@ -57,11 +57,11 @@ class DepthRange:
 
     @property
     def resolution(self) -> float:
-        """Distance between two values that can be told apart, in world units."""
+        """Return the smallest difference between two distances, in world units."""
         return self.span / _STEPS
 
     def glsl(self, distance: str, hit: str = "true") -> str:
-        """Code that overwrites the colour with a distance.
+        """Write GLSL that replaces the colour by a distance.
 
         Parameters
         ----------
@@ -77,7 +77,7 @@ class DepthRange:
         )
 
     def read(self, view: View) -> np.ndarray:
-        """Distances in a view that was rendered with this range's code.
+        """Read the distances in a view that was rendered with this range's GLSL.
 
         Returns
         -------

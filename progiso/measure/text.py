@@ -1,4 +1,4 @@
-"""Figures for people."""
+"""Format numbers for people."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 
 def number(value: float | None) -> str:
-    """Three significant digits, without an exponent where that stays short.
+    """Format three significant digits, without an exponent where that stays short.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def number(value: float | None) -> str:
 
 
 def milliseconds(value: float | None) -> str:
-    """A time in milliseconds or seconds.
+    """Format a time in milliseconds or seconds.
 
     Examples
     --------
@@ -48,7 +48,7 @@ def milliseconds(value: float | None) -> str:
 
 
 def bytes_(value: float | None) -> str:
-    """An amount of memory in KiB, MiB or GiB.
+    """Format an amount of memory in KiB, MiB or GiB.
 
     Examples
     --------
@@ -64,7 +64,7 @@ def bytes_(value: float | None) -> str:
 
 
 def count(value: float | None) -> str:
-    """A large number in thousands or millions.
+    """Format a large number in thousands or millions.
 
     Examples
     --------
@@ -80,7 +80,7 @@ def count(value: float | None) -> str:
 
 
 def percent(value: float) -> str:
-    """A percentage.
+    """Format a percentage.
 
     Examples
     --------
@@ -91,7 +91,7 @@ def percent(value: float) -> str:
 
 
 def pixels(size: Sequence[int]) -> str:
-    """An image's size.
+    """Format an image's size.
 
     Examples
     --------
@@ -102,7 +102,7 @@ def pixels(size: Sequence[int]) -> str:
 
 
 def table(headers: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
-    """A Markdown table; the first column is text, the others are figures.
+    """Make a Markdown table; the first column is text, the others are numbers.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Every tolerance of tests, benchmarks and verification, and why it is what it is."""
+"""Hold every tolerance of tests, benchmarks and verification, each with its reason."""
 
 from ..oracle.caster import Slack
 

@@ -1,4 +1,4 @@
-"""Topology of an isosurface: what of it noise or a low rate makes and breaks."""
+"""Count an isosurface's components and handles, which noise and low rates change."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def topology(image: vtkImageData, isovalue: float) -> dict[str, int]:
 
 
 def _edges(corners: np.ndarray) -> int:
-    """Number of edges of triangles."""
+    """Count the edges of triangles."""
     ends = np.sort(np.vstack([corners[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1)
     keys = ends[:, 0].astype(np.int64) << 32 | ends[:, 1]
     keys.sort()

@@ -1,4 +1,4 @@
-"""An off-screen window with one prop, rendered by the clock."""
+"""Render one prop in an off-screen window, and time it."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class View(ABC):
         self.window.AddRenderer(self.renderer)
 
     def look(self, camera: Camera) -> None:
-        """Move to a `progiso.Camera`, its clipping range around the prop."""
+        """Move to a `progiso.Camera`, and set the clipping range around the prop."""
         camera.apply(self.renderer.GetActiveCamera())
         self.renderer.ResetCameraClippingRange()
 
@@ -68,7 +68,7 @@ class View(ABC):
         return 1e3 * elapsed
 
     def render_from(self, camera: Camera) -> float:
-        """Look, then render; milliseconds of wall clock of the latter."""
+        """Look, then render, and return the milliseconds of rendering."""
         self.look(camera)
         return self.render()
 
@@ -98,19 +98,19 @@ class View(ABC):
 
     @abstractmethod
     def depth(self) -> np.ndarray:
-        """Distances along the last view's rays, ``inf`` without a hit; row 0 is the top."""
+        """Return distances along the last view's rays, ``inf`` without a hit; row 0 is the top."""
 
     @abstractmethod
     def depth_resolution(self) -> float:
-        """Resolution of `depth` in world units."""
+        """Return the resolution of `depth` in world units."""
 
     def close(self) -> None:
-        """Give back the window and all that it holds on the GPU."""
+        """Close the window and free all that it holds on the GPU."""
         self.window.Finalize()
 
 
 def opposite(camera: Camera) -> Camera:
-    """The camera on the other side of the focal point.
+    """Move a camera to the other side of its focal point.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def opposite(camera: Camera) -> Camera:
 
 
 def turned(camera: Camera, degrees: float) -> Camera:
-    """The camera moved sideways about the focal point, on the great circle to its right.
+    """Move a camera around its focal point, on the great circle to its right.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""References that the tests compare ProgIso with; numpy only, none of the project's own code."""
+"""Compute references for tests by NumPy alone, without any of the project's other code."""

@@ -1,4 +1,4 @@
-"""Double-precision CPU ray caster of the exact trilinear isosurface.
+"""Cast rays at the exact trilinear isosurface, on the CPU in double precision.
 
 Every ray visits each cell that it crosses, found by an exact grid walk. Inside a cell the trilinear
 interpolant along a ray is a cubic; its extrema split the ray's way through the cell into monotone
@@ -32,7 +32,7 @@ _SAME_AXES, _SAME_PLACE = np.eye(3), np.eye(4)
 
 @dataclass(frozen=True)
 class Slack:
-    """What rounding may do to a caster in single precision.
+    """Bounds what rounding may do to a caster in single precision.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class Slack:
 
 @dataclass(frozen=True)
 class Volume:
-    """Samples and where they are.
+    """Holds samples and where they are.
 
     Attributes
     ----------
@@ -104,7 +104,7 @@ class Volume:
 
 @dataclass(frozen=True)
 class Camera:
-    """A VTK camera: pixel centres are sampled, row 0 is at the top of the image."""
+    """Makes rays as a VTK camera does: through pixel centres, from the top row on."""
 
     position: tuple[float, ...]
     focal_point: tuple[float, ...]
@@ -125,7 +125,7 @@ class Camera:
 
     @property
     def forward(self) -> np.ndarray:
-        """Unit vector across the image plane."""
+        """Return the unit vector perpendicular to the image plane."""
         return _unit(np.subtract(self.focal_point, self.position, dtype=float))
 
     def rays(
@@ -263,7 +263,7 @@ class Crossings:
     surface: np.ndarray
 
     def only(self, kept: np.ndarray) -> Crossings:
-        """Return those that a mask keeps."""
+        """Return the crossings that a mask keeps."""
         return Crossings(self.ray[kept], self.depth[kept], self.surface[kept])
 
 
@@ -312,7 +312,7 @@ def _unit(vector: np.ndarray) -> np.ndarray:
 
 
 class _Grid:
-    """The samples, flat, and which cells can matter to a ray that started inside or outside.
+    """Holds the samples and which cells matter to a ray that started inside or outside.
 
     What else a ray has to know of a cell is made when it gets there, so that a volume takes little
     more memory than its samples.
@@ -577,7 +577,7 @@ class _Walk:
 
 
 class _FullWalk(_Walk):
-    """The same walk, but on through all crossings, whichever way they go."""
+    """Walks on through all crossings, in both directions."""
 
     def crossings(self) -> list[np.ndarray]:
         """Return the rays and the distances of all crossings."""

@@ -1,4 +1,4 @@
-"""Verification: what an image is off by, and what it costs, where fields and views are extreme.
+"""Verify images of extreme fields and views: how large their errors are, and their times.
 
 ``python -m progiso verify`` prints a row a case. The error of a picture is judged by the caster in
 double precision (`progiso.oracle.caster`) over the decoded values, so that compression has no part

@@ -1,4 +1,4 @@
-"""What a case is, and the row that it makes."""
+"""Define what a case is, and make its row of the table."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ OK, FAILED, LIMIT = "ok", "failed", "limit"
 
 @dataclass(frozen=True)
 class Settings:
-    """How cases are rendered.
+    """Tells how cases are rendered.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ QUICK = Settings((128, 96), 2, 100_000)
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a case has found.
+    """Holds what a case has found.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Case:
-    """A row of the table to come.
+    """Describes a row of the table before it is measured.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""``python -m progiso verify``: its options, and what it does with them."""
+"""Parse the options of ``progiso verify``, and run it."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def add_verify(command: argparse.ArgumentParser) -> None:
 
 
 def _count(text: str) -> int:
-    """A type of option: a number, of rays for example, which may have an exponent."""
+    """Parse a whole number that may be written with an exponent."""
     try:
         value = float(text)
     except ValueError:
@@ -106,7 +106,7 @@ def verify(
 
 
 def _say(count: int) -> Started:
-    """Tell on standard error what is measured, of so many cases."""
+    """Make a function that tells on standard error which of `count` cases is measured."""
 
     def say(number: int, section: str, case: Case) -> None:
         print(f"{number}/{count} {section}: {case.name}", file=sys.stderr, flush=True)

@@ -1,4 +1,4 @@
-"""Rates from 1 to 32: the picture is that of the decoded samples; the notes tell their worth."""
+"""Check pictures at rates from 1 to 32; the notes tell what compression changes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _RATES = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32)
 
 
 def _sheet(n: int) -> np.ndarray:
-    """A curved sheet that is one sample thick: high on it, low on either side."""
+    """Make a curved sheet, one sample thick: high on it, low on either side."""
     x, y, z = coordinates((n, n, n))
     centre = n / 2 - 0.3
     off = np.sqrt((x - centre) ** 2 + (y - centre) ** 2 + (z - centre) ** 2) - 0.37 * n
@@ -40,7 +40,7 @@ def _rate(field: Callable[[int], np.ndarray], rate: float, settings: Settings) -
 
 
 def _worth(plain: vtkImageData, image: vtkImageData, size: tuple[int, int]) -> str:
-    """What is left of the surface, by the caster and FlyingEdges."""
+    """Tell how compression changes the surface, by the caster and FlyingEdges."""
     eye = orbit_camera(plain, 1, 4)
     eye = caster.Camera(eye.position, eye.focal_point, eye.view_up, eye.view_angle)
     original = caster.Volume.from_image(samples_of(plain), plain)

@@ -1,4 +1,4 @@
-"""Does a ray slip through a closed surface? Where rays must hit is known here without casting any.
+"""Look for rays that slip through closed surfaces, by fields where every hit is known.
 
 A random field has a *core*, a box whose samples are all at least the isovalue, and around it a
 closed skin of samples that are all below. Between them the trilinear surface has no hole. So a
@@ -50,7 +50,7 @@ CLIPPING_INSIDE = (0.01, 1e4)
 
 @dataclass(frozen=True)
 class ClosedField:
-    """Samples with a core and a skin.
+    """Holds samples with a core and a skin.
 
     Attributes
     ----------
@@ -147,7 +147,7 @@ _KINDS = {"noise": _noise, "smooth": _smooth, "hollow": _hollow, "thin": _thin}
 def _random_box(
     rng: np.random.Generator, shape: tuple[int, ...], width: int | None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """First and last samples of a box of some width, at least 3, off the border by 2."""
+    """Choose the first and last samples of a box, at least 3 wide, 2 off the border."""
     sizes = np.array(shape[::-1])
     widths = rng.integers(3, sizes - 3) if width is None else np.full(3, width)
     low = rng.integers(2, sizes - 1 - widths)
@@ -155,7 +155,7 @@ def _random_box(
 
 
 def _box(low: np.ndarray, high: np.ndarray) -> tuple[slice, ...]:
-    """The index of a box in samples [z, y, x]."""
+    """Make the index of a box in samples [z, y, x]."""
     return tuple(slice(a, b + 1) for a, b in zip(low[::-1], high[::-1]))
 
 
@@ -163,7 +163,7 @@ def _box(low: np.ndarray, high: np.ndarray) -> tuple[slice, ...]:
 
 
 def camera_inside(field: ClosedField, rng: np.random.Generator) -> Camera:
-    """A camera in the core, a voxel from its boundary; half of them exactly on a sample.
+    """Place a camera in the core, a voxel from its boundary, half the time on a sample.
 
     Returns
     -------
@@ -177,7 +177,7 @@ def camera_inside(field: ClosedField, rng: np.random.Generator) -> Camera:
 
 
 def camera_outside(field: ClosedField, rng: np.random.Generator) -> Camera:
-    """A camera outside the volume that looks at the core, perspective or parallel."""
+    """Place a camera outside the volume that looks at the core, perspective or parallel."""
     sizes = np.array(field.values.shape[::-1])
     target = rng.uniform(field.low, field.high)
     if rng.integers(2):
@@ -201,7 +201,7 @@ def _camera(
 
 
 def _direction(rng: np.random.Generator) -> np.ndarray:
-    """A unit vector: any, or along an axis or a diagonal, whose rays meet edges and corners."""
+    """Draw a unit vector, half the time along an axis or a diagonal, to meet edges and corners."""
     special = list(itertools.product((-1.0, 0.0, 1.0), repeat=3))
     special.remove((0.0, 0.0, 0.0))
     vector = rng.normal(size=3) if rng.integers(2) else np.array(special[rng.integers(26)])
@@ -242,7 +242,7 @@ def slipped(
 def _meets(
     origins: np.ndarray, directions: np.ndarray, low: np.ndarray, high: np.ndarray
 ) -> np.ndarray:
-    """Which rays meet a box."""
+    """Tell which rays meet a box."""
     enter, leave = caster.clip_to_box(origins.T, directions.T, 0.0, np.inf, low, high)
     return enter <= leave
 
@@ -252,7 +252,7 @@ def _meets(
 
 @dataclass
 class _Count:
-    """What has been cast so far."""
+    """Counts what has been cast so far."""
 
     rays: int = 0
     wrong: int = 0
@@ -337,7 +337,7 @@ def _look_around(
 
 
 def _least_budget(view: Isosurface) -> int:
-    """The least memory budget that a view can work with, which its last image tells."""
+    """Return the least memory budget that a view can work with, as its last image says."""
     if not view.statistics()["passes"]:
         view.render()
     return view.statistics()["memory"]["least_budget"]

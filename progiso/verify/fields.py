@@ -1,4 +1,4 @@
-"""Fields, and images of them."""
+"""Make fields, and images of them."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 
 
 def noise(shape: tuple[int, ...], seed: int = 0) -> np.ndarray:
-    """White noise [z, y, x]: every cell crosses zero, many rays find several roots in one."""
+    """Make white noise [z, y, x]: most cells cross zero, many with several roots along a ray."""
     return np.random.default_rng(seed).normal(size=shape).astype(np.float32)
 
 
 def marschner_lobb(n: int, frequency: float = 6.0, alpha: float = 0.25) -> np.ndarray:
-    """The signal of Marschner and Lobb (1994), which everyone's resampling is judged by."""
+    """Make the signal of Marschner and Lobb (1994), the usual test of resampling."""
     z, y, x = np.meshgrid(*[np.linspace(-1, 1, n)] * 3, indexing="ij")
     ring = np.cos(2 * np.pi * frequency * np.cos(np.pi * np.hypot(x, y) / 2))
     signal = (1 - np.sin(np.pi * z / 2) + alpha * (1 + ring)) / (2 * (1 + alpha))
@@ -23,7 +23,7 @@ def marschner_lobb(n: int, frequency: float = 6.0, alpha: float = 0.25) -> np.nd
 
 
 def blobs(shape: tuple[int, ...], seed: int = 0, waves: int = 3) -> np.ndarray:
-    """A smooth random field, periodic waves along each axis, about -1 to 1."""
+    """Make a smooth random field of waves, from about -1 to 1."""
     rng = np.random.default_rng(seed)
     axes = np.meshgrid(*[np.linspace(0, 2 * np.pi, n) for n in shape], indexing="ij")
     field = np.zeros(shape)
@@ -34,7 +34,7 @@ def blobs(shape: tuple[int, ...], seed: int = 0, waves: int = 3) -> np.ndarray:
 
 
 def coordinates(shape: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Coordinates x, y and z of the samples, each an array [z, y, x], from the first sample on."""
+    """Return coordinates x, y and z of the samples, each an array [z, y, x]."""
     z, y, x = np.indices(shape, dtype=float)
     return x, y, z
 

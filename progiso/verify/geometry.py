@@ -1,4 +1,4 @@
-"""Volumes, cameras and images of extreme shape, place and size."""
+"""Check volumes, cameras and images of extreme shape, place and size."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def _field(**geometry: Any) -> vtkImageData:
 
 
 def _placed(settings: Settings, user: np.ndarray | None = None, **geometry: Any) -> Outcome:
-    """In perspective and in parallel projection, from a side of the orbit each."""
+    """Look in perspective and in parallel projection, from a side of the orbit each."""
     image = _field(**geometry)
     bounds = image.GetBounds()
     if user is not None:
@@ -43,7 +43,7 @@ def _placed(settings: Settings, user: np.ndarray | None = None, **geometry: Any)
 
 
 def _stretched(spacing: tuple[float, float, float], settings: Settings) -> Outcome:
-    """Beams and plates, from as near as their middle side asks for."""
+    """Look at beams and plates, from as near as their middle side asks for."""
     image = _field(spacing=spacing)
     low, high = np.array(image.GetBounds()).reshape(3, 2).T
     reach = np.full(3, np.median(high - low) / 2)
@@ -67,7 +67,7 @@ def _shape(shape: tuple[int, ...], settings: Settings) -> Outcome:
 
 
 def _long(axis: int, settings: Settings) -> Outcome:
-    """65536 samples along an axis, seen from beside near its far end."""
+    """Look at 65536 samples along an axis, from beside its far end."""
     values = np.moveaxis(noise((5, 6, 65536), 12), 2, 2 - axis)
     centre = np.roll([65500.0, 2.5, 2.0], axis)
     aside = np.roll([-9.0, 20.0, 14.0], axis)
@@ -76,7 +76,7 @@ def _long(axis: int, settings: Settings) -> Outcome:
 
 
 def _along_a_long_one(settings: Settings) -> Outcome:
-    """Rays that go 65000 voxels before they hit."""
+    """Cast rays that go 65000 voxels before they hit."""
     values = np.zeros((4, 4, 65536), np.float32)
     values[..., 65000:] = 0.3 + noise((4, 4, 536), 13) / 10
     camera = looking((-10, 1.4, 1.6), (65000, 1.5, 1.5), (0, 0, 1), 0.003)
@@ -92,13 +92,13 @@ def _from(
     towards: Sequence[float] = (0.3, 0.5, -0.2),
     angle: float = 70.0,
 ) -> Outcome:
-    """From a place in the volume or at its border."""
+    """Look from a place in the volume or at its border."""
     camera = looking(position, np.add(position, towards), (0.1, 0.2, 1), angle)
     return check_depths(settings, _field(), _ISOVALUE, camera)
 
 
 def _along_axes(settings: Settings) -> Outcome:
-    """Parallel rays along an axis, at two pixels a voxel: every other lies on a plane of voxels."""
+    """Cast parallel rays along an axis, every other one in a plane of voxels."""
     image = compressed(blobs((25, 25, 25), 6))
     cameras = []
     for axis in range(3):
@@ -111,7 +111,7 @@ def _along_axes(settings: Settings) -> Outcome:
 
 
 def _through_corners(settings: Settings) -> Outcome:
-    """Rays all of whose samples lie in faces, edges or corners of cells."""
+    """Cast rays that stay in faces, edges or corners of cells."""
     image = compressed(blobs((17, 17, 17), 6))
     cameras = [
         parallel(looking(position, (8, 8, 8)), scale)
@@ -121,7 +121,7 @@ def _through_corners(settings: Settings) -> Outcome:
 
 
 def _angle(degrees: float, settings: Settings) -> Outcome:
-    """From so far that the volume fills this view angle, or from two voxels beside its centre."""
+    """Look at this view angle, from where the volume fills it or two voxels beside its centre."""
     distance = 16 / np.tan(np.radians(degrees) / 2)
     towards = np.array([0.5, 0.7, 0.3])
     position = _CENTRE + max(distance, 2.0) * towards / np.linalg.norm(towards)
@@ -130,7 +130,7 @@ def _angle(degrees: float, settings: Settings) -> Outcome:
 
 
 def _clipped(settings: Settings) -> Outcome:
-    """Near and far planes that cut through the surface."""
+    """Cut through the surface by the near and the far plane."""
     image = _field()
     camera = orbit_camera(image, 1, 4)
     distance = float(np.linalg.norm(np.subtract(camera.position, camera.focal_point)))
@@ -138,7 +138,7 @@ def _clipped(settings: Settings) -> Outcome:
 
 
 def _zoomed(scale: float, settings: Settings) -> Outcome:
-    """A cell that the surface crosses, and less of it, fills the image."""
+    """Fill the image with a cell that the surface crosses, and with less of it."""
     image = _field()
     camera = orbit_camera(image, 1, 4)
     first = _place(image, camera)
@@ -163,7 +163,7 @@ def _image(size: tuple[int, int], settings: Settings) -> Outcome:
 
 
 def _large_image(settings: Settings) -> Outcome:
-    """One image of 67 million rays, of which the caster casts some."""
+    """Render one image of 67 million rays, of which the caster casts some."""
     once = replace(settings, repeat=0)
     return check_depths(once, _field(), _ISOVALUE, size=(8192, 8192), sample=20_000)
 

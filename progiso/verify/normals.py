@@ -1,4 +1,4 @@
-"""Normals: the angle to the analytic gradient, and to central differences in double precision."""
+"""Compare normals with gradients: analytic ones, and central differences in double precision."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class LitPicture(Picture):
         self.renderer.SetPass(self._frame)
 
     def normals(self, camera: Camera) -> np.ndarray:
-        """Unit vectors in world coordinates [row, column, axis], to where values are lower.
+        """Return unit vectors in world coordinates [row, column, axis], to where values are lower.
 
         Zero where there is no surface; row 0 is the top of the image.
         """
@@ -66,7 +66,7 @@ class LitPicture(Picture):
         return np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
 
     def _light(self, camera: Camera, sign: int) -> np.ndarray:
-        """The picture by light from the axes' one side, or the other."""
+        """Render by light from one side of the axes or the other."""
         self.renderer.RemoveAllLights()
         for axis in np.eye(3):
             light = vtkLight()
@@ -95,7 +95,7 @@ def check_normals(
     note: str = "",
     **options: Any,
 ) -> Outcome:
-    """Render normals and hold them against a gradient.
+    """Render normals and compare them with a gradient.
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ def _expected_normals(
     gradient: Callable[[np.ndarray], np.ndarray] | None,
     inner: float,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Vectors along the normals at places in world coordinates, and which of them count."""
+    """Return vectors along the normals at places in world coordinates, and which of them count."""
     to_index = np.linalg.inv(volume.index_to_world)
     places = places @ to_index[:3, :3].T + to_index[:3, 3]
     last = np.array(volume.values.shape[::-1]) - 1.0
@@ -170,14 +170,14 @@ def _expected_normals(
 
 
 def _degrees(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Angles between vectors, exact also where they are small."""
+    """Return the angles between vectors, exact also where they are small."""
     a, b = (v / np.linalg.norm(v, axis=1, keepdims=True).clip(1e-300) for v in (a, b))
     half = np.linalg.norm(a - b, axis=1) / 2
     return 2 * np.degrees(np.arcsin(np.clip(half, 0, 1)))
 
 
 class _Differences:
-    """Central differences of samples, one-sided at the border, and trilinear between them."""
+    """Computes central differences, one-sided at the border, trilinear between samples."""
 
     def __init__(self, values: np.ndarray) -> None:
         self._gradients = np.stack(np.gradient(values.astype(float))[::-1], axis=-1)
@@ -198,7 +198,7 @@ class _Differences:
 
 
 def _quadric(settings: Settings, scale: float = 1.0, **geometry: Any) -> Outcome:
-    """A quadratic field: its central differences are its gradient, between samples too."""
+    """Render a quadratic field: its central differences are its gradient, between samples too."""
     shape, centre = (22, 26, 24), np.array([11.3, 12.8, 10.4])
     a, b = np.diag([1.0, 0.6, 0.8]), np.array([[0, 0.2, -0.1], [0.2, 0, 0.15], [-0.1, 0.15, 0]])
     form = a + b
@@ -215,7 +215,7 @@ def _quadric(settings: Settings, scale: float = 1.0, **geometry: Any) -> Outcome
 
 
 def _sphere(radius: float, settings: Settings) -> Outcome:
-    """A distance: differences over two voxels are off by what the radius is to its square."""
+    """Render a sphere; the error of its central differences falls with the square of its radius."""
     size = int(2 * radius + 8)
     centre = np.array([0.37, 0.61, 0.13]) + size / 2 - 0.5
     distance = np.linalg.norm(np.stack(coordinates((size,) * 3), axis=-1) - centre, axis=-1)
@@ -229,7 +229,7 @@ def _sphere(radius: float, settings: Settings) -> Outcome:
 
 
 def _plane(settings: Settings) -> Outcome:
-    """A linear field, to the border of the volume: the same normal everywhere."""
+    """Render a linear field up to the volume's border: the normal is the same everywhere."""
     x, y, z = coordinates((12, 14, 16))
     values = x + 0.8 * y + 0.5 * z
     gradient = np.array([1.0, 0.8, 0.5])
@@ -246,7 +246,7 @@ def _plane(settings: Settings) -> Outcome:
 
 
 def _noise(cached: bool, settings: Settings) -> Outcome:
-    """White noise: across every face of cells, blocks and macrocells."""
+    """Render white noise: normals across all faces of cells, blocks and macrocells."""
     return check_normals(
         settings,
         compressed(noise((21, 18, 19), 17)),
@@ -257,7 +257,7 @@ def _noise(cached: bool, settings: Settings) -> Outcome:
 
 
 def _block_corner(cached: bool, settings: Settings) -> Outcome:
-    """Looks at the corner of eight blocks from so near that a pixel is a thousandth of a voxel."""
+    """Look at the corner of eight blocks from so near that a pixel is a thousandth of a voxel."""
     values = noise((16, 16, 16), 18)
     values[7:9, 7:9, 7:9] = np.linspace(-1, 1, 8).reshape(2, 2, 2)
     image = compressed(values)

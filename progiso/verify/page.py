@@ -1,4 +1,4 @@
-"""The table for people: on the terminal, and as Markdown."""
+"""Show the table on the terminal and as Markdown."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def print_table(rows: Sequence[dict[str, Any]]) -> None:
 
 
 def markdown(document: dict[str, Any]) -> str:
-    """Rows as a page.
+    """Make a page of the rows.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def markdown(document: dict[str, Any]) -> str:
 
 
 def _busy(run: dict[str, Any]) -> str:
-    """A warning where others kept the machine from its work."""
+    """Warn where other processes kept the machine busy."""
     others = run["others_cores"]
     if others is None or others < 0.1:
         return ""
@@ -115,5 +115,5 @@ def _error(row: dict[str, Any]) -> str:
 
 
 def _figure(value: float | None) -> str:
-    """Two digits: a table of orders of magnitude."""
+    """Format two digits: orders of magnitude are what the table is about."""
     return "∞" if value is None else f"{value:.2g}"

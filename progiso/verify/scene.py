@@ -1,4 +1,4 @@
-"""Images of a compressed volume, timed, and held against the caster."""
+"""Render images of a compressed volume, time them and compare them with the caster."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ RATE = 32
 
 
 def compressed(values: np.ndarray, rate: float = RATE, **geometry: Any) -> vtkImageData:
-    """A compressed volume of values [z, y, x]; `geometry` as `fields.make_image` has it."""
+    """Compress values [z, y, x]; `geometry` as in `fields.make_image`."""
     return compress(make_image(values, **geometry), rate=rate)
 
 
 def decoded(image: vtkImageData, user: np.ndarray | None = None) -> caster.Volume:
-    """What libzfp decodes of a compressed volume, as the caster takes it."""
+    """Decode a compressed volume by libzfp, for the caster."""
     plain = decompress(image)
     cells = plain.GetPointData().GetScalars() is None
     matrix = np.eye(4) if user is None else np.asarray(user, float)
@@ -46,7 +46,7 @@ def decoded(image: vtkImageData, user: np.ndarray | None = None) -> caster.Volum
 
 
 class Picture(Isosurface):
-    """A compressed volume in a view whose clipping planes may be given.
+    """Shows a compressed volume in a view whose clipping planes may be given.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ class Picture(Isosurface):
             self.renderer.GetActiveCamera().SetClippingRange(self._clip)
 
     def time(self, camera: Camera, repeat: int) -> float:
-        """Least milliseconds of an image, another one having been rendered before each.
+        """Return the least milliseconds of an image; before each another image is rendered.
 
         With `repeat` 0 those of the first image.
         """
@@ -97,7 +97,7 @@ class Picture(Isosurface):
         return min(times)
 
     def rays(self) -> tuple[caster.Camera, tuple[float, float]]:
-        """Camera and clipping range as the caster takes them."""
+        """Return camera and clipping range, for the caster."""
         camera = self.renderer.GetActiveCamera()
         return caster.Camera.from_vtk(camera), camera.GetClippingRange()
 
@@ -117,7 +117,7 @@ def check_depths(
     sample: int | None = None,
     **options: Any,
 ) -> Outcome:
-    """Render an image, time it, and hold its depths against the caster.
+    """Render an image, time it, and compare its depths with the caster's.
 
     Parameters
     ----------
@@ -207,7 +207,7 @@ def check_views(
     cameras: Sequence[Camera | None] = (None,),
     **options: Any,
 ) -> Outcome:
-    """`check_depths` of all isovalues from all cameras: the worst of them."""
+    """Return the worst `check_depths` of all isovalues from all cameras."""
     options.setdefault("volume", decoded(image, options.get("user")))
     return worst_of(
         check_depths(settings, image, isovalue, camera, **options)
@@ -217,7 +217,7 @@ def check_views(
 
 
 def parallel(camera: Camera, scale: float) -> Camera:
-    """A camera in parallel projection, its image twice `scale` high."""
+    """Make a camera's projection parallel, its image twice `scale` high."""
     return replace(camera, parallel=True, parallel_scale=float(scale))
 
 
@@ -227,6 +227,6 @@ def looking(
     view_up: Sequence[float] | np.ndarray = (0.0, 1.0, 0.0),
     view_angle: float = 30.0,
 ) -> Camera:
-    """A `progiso.Camera` of numbers of any kind."""
+    """Make a `progiso.Camera` of numbers of any kind."""
     place, target, up = (tuple(map(float, v)) for v in (position, focal_point, view_up))
     return Camera(place, target, up, float(view_angle))

@@ -1,4 +1,4 @@
-"""Fields that are hard on the arithmetic: steep, flat, thin, ambiguous and degenerate ones."""
+"""Check fields that strain the arithmetic: steep, flat, thin, ambiguous and degenerate ones."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ _SHAPE = (28, 25, 31)
 
 
 def _reference(settings: Settings) -> Outcome:
-    """What others' times are compared with."""
+    """Render a plain field, for the other cases' times to be compared with."""
     return check_depths(settings, compressed(blobs(_SHAPE, 3)), 0.1)
 
 
 def _distance(shape: tuple[int, ...], radius: float = 9.0) -> np.ndarray:
-    """Voxels outside a sphere that stands off the grid."""
+    """Return the distance in voxels from a sphere that is not aligned with the grid."""
     x, y, z = coordinates(shape)
     centre = np.array(shape[::-1]) / 2 - (0.37, 0.61, 0.13)
     return np.sqrt(sum((c - m) ** 2 for c, m in zip((x, y, z), centre))) - radius
 
 
 def _front(slope: float, height: float, settings: Settings) -> Outcome:
-    """A shock front; the isovalues lie in its middle and on either shoulder."""
+    """Render a shock front; the isovalues lie in its middle and on either shoulder."""
     values = height * np.tanh(slope / height * _distance(_SHAPE))
     image = compressed(values.astype(np.float32))
     return check_views(settings, image, [height * at for at in (0.0, 0.9, -0.999)])
@@ -39,7 +39,7 @@ def _step(settings: Settings) -> Outcome:
 
 
 def _gradients(settings: Settings) -> Outcome:
-    """From one end to the other the gradient goes from 1e-12 to 1e12 a voxel."""
+    """Render a field whose gradient goes from 1e-12 to 1e12 a voxel, from end to end."""
     shape = (24, 24, 64)
     decades = np.linspace(-12, 12, shape[2])
     values = blobs(shape, 4).astype(float) * 10.0**decades
@@ -52,14 +52,14 @@ def _scaled(scale: float, settings: Settings) -> Outcome:
 
 
 def _plateau(settings: Settings) -> Outcome:
-    """Within a few units in the last place of the isovalue everywhere."""
+    """Render a field that is within a few units in the last place of the isovalue everywhere."""
     steps = np.round(3 * noise(_SHAPE, 6))
     image = compressed((1 + steps * 2.0**-23).astype(np.float32))
     return check_depths(settings, image, 1 + 2.0**-24, grazing=_NOISE)
 
 
 def _flat_plateau(settings: Settings) -> Outcome:
-    """A wide plateau at the isovalue that sinks by 1e-6 to its rim, and falls off steeply there."""
+    """Render a wide plateau at the isovalue that sinks by 1e-6 to its steep rim."""
     distance = _distance(_SHAPE)
     values = 5 - 1e-6 * np.exp2(distance) - np.maximum(distance, 0)
     image = compressed(values.astype(np.float32))
@@ -78,13 +78,13 @@ def _noise(cached: bool, settings: Settings) -> Outcome:
 
 
 def _thin_shell(settings: Settings) -> Outcome:
-    """A shell of a tenth of a voxel: what the samples hold of it are specks and needles."""
+    """Render a shell of a tenth of a voxel, of which samples hold specks and needles."""
     values = np.exp(-((_distance(_SHAPE) / 0.1) ** 2))
     return check_views(settings, compressed(values.astype(np.float32)), (0.5, 0.01))
 
 
 def _sheet(settings: Settings) -> Outcome:
-    """One layer of samples, slanted, so that it is pierced from voxel to voxel."""
+    """Render one slanted layer of samples, which has holes between voxels."""
     x, y, z = coordinates(_SHAPE)
     values = np.where(np.abs(0.31 * x + 0.47 * y + z - 22) < 0.4, 1.0, 0.0)
     return check_views(settings, compressed(values.astype(np.float32)), (0.5, 0.99))
@@ -94,19 +94,19 @@ def _sheet(settings: Settings) -> Outcome:
 
 
 def _product(centre: float, axes: tuple[int, ...], size: int = 9) -> np.ndarray:
-    """The product of coordinates about a point: one trilinear field, exactly."""
+    """Make the product of coordinates about a point: one trilinear field, exactly."""
     factors = [c - centre for c in coordinates((size,) * 3)]
     return np.prod([factors[axis] for axis in axes], axis=0).astype(np.float32)
 
 
 def _saddles(settings: Settings) -> Outcome:
-    """Faces and bodies of cells whose corners alternate, at and about their saddle's value."""
+    """Render cells whose corners alternate, at and about the values of their saddles."""
     image = compressed(_product(4.5, (0, 1, 2), 10))
     return check_views(settings, image, (0.0, 1e-7, -1e-7, 1e-3, -1e-3, 0.125), grazing=_SINGULAR)
 
 
 def _root_of_order(order: int, settings: Settings) -> Outcome:
-    """Rays along the diagonal of a product of coordinates, which they see as a power of the way."""
+    """Cast rays along the diagonal of a product of coordinates, a power of the distance."""
     axes = tuple(range(order))
     towards = np.array([1.0, 1.0, 1.0 if order == 3 else 0.0])
     camera = parallel(looking(4 - 20 * towards, (4, 4, 4), (0, 0, 1)), 1.5)
@@ -118,13 +118,13 @@ def _root_of_order(order: int, settings: Settings) -> Outcome:
 
 
 def _odd(size: tuple[int, int]) -> tuple[int, int]:
-    """A size with a pixel in its middle."""
+    """Make a size odd, so that a pixel is in its middle."""
     width, height = (n // 2 * 2 + 1 for n in size)
     return width, height
 
 
 def _touching(settings: Settings) -> Outcome:
-    """Rays that touch the surface in one point, seen from where they do not cross it."""
+    """Cast rays that touch the surface in one point without crossing it."""
     camera = parallel(looking((-16, -16, 4), (4, 4, 4), (0, 0, 1)), 1.5)
     image = compressed(-_product(4.0, (0, 1)))
     return check_views(
@@ -133,13 +133,13 @@ def _touching(settings: Settings) -> Outcome:
 
 
 def _square(settings: Settings) -> Outcome:
-    """Rays in planes of constant z: a cell's cubic has no cube."""
+    """Cast rays in planes of constant z: a cell's cubic has no term of third order."""
     camera = parallel(looking((-30, -20, 8), (8, 9, 8), (0, 0, 1)), 9)
     return check_depths(settings, compressed(noise((17, 19, 17), 8)), 0.3, camera, grazing=_NOISE)
 
 
 def _line(settings: Settings) -> Outcome:
-    """Rays along an axis: the interpolant is linear in every cell."""
+    """Cast rays along an axis: the interpolant is linear in every cell."""
     cameras = []
     for axis in range(3):
         position = np.full(3, 8.0)
@@ -149,24 +149,24 @@ def _line(settings: Settings) -> Outcome:
 
 
 def _extruded(seed: int = 10) -> np.ndarray:
-    """Noise in y and z that does not change along x."""
+    """Make noise in y and z that does not change along x."""
     return np.repeat(noise((17, 17, 1), seed), 17, axis=2)
 
 
 def _constant(settings: Settings) -> Outcome:
-    """Along the rays nothing changes: none of them crosses a surface."""
+    """Cast rays along which nothing changes: none of them crosses a surface."""
     camera = parallel(looking((-30, 8, 8), (8, 8, 8), (0, 0, 1)), 9)
     return check_depths(settings, compressed(_extruded()), 0.3, camera, hits=False)
 
 
 def _nearly_constant(settings: Settings) -> Outcome:
-    """Rays that change cells across their way once in 95: all coefficients are nearly equal."""
+    """Cast rays along which next to nothing changes."""
     camera = parallel(looking((-30, 8.4, 8.28), (8, 8, 8), (0, 0, 1)), 9)
     return check_depths(settings, compressed(_extruded()), 0.3, camera, grazing=_NOISE)
 
 
 def _zero(settings: Settings) -> Outcome:
-    """Cells of zeros at isovalue zero: they are inside, and the surface lies at their rim."""
+    """Render cells of zeros at isovalue zero: they are inside, the surface lies at their rim."""
     values = np.minimum(np.round(4 * blobs((24, 20, 28), 11)), 0)
     image = compressed(values.astype(np.float32))
     return check_views(settings, image, (0.0,), grazing=1.0)

@@ -1,4 +1,4 @@
-"""The table: its sections and their cases."""
+"""List the sections of the table, and measure their cases."""
 
 from __future__ import annotations
 
@@ -97,6 +97,6 @@ def _awaited(
 
 
 def _row_named(section: str, name: str, settings: Settings) -> dict[str, Any]:
-    """A case by its name: cases themselves do not go from process to process."""
+    """Measure a case by its name, since cases cannot be sent between processes."""
     (case,) = (case for case in SECTIONS[section] if case.name == name)
     return row_of(section, case, settings)

@@ -1,4 +1,4 @@
-"""Values and isovalues at the ends of what numbers can hold."""
+"""Check values and isovalues at the ends of what numbers can hold."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def _scaled(scale: float, settings: Settings) -> Outcome:
 
 
 def _in_units(offset: float, scale: float, kind: type[np.number], settings: Settings) -> Outcome:
-    """Values that float32 cannot hold, against the caster over the double-precision field."""
+    """Render values that float32 cannot hold; the caster has them in double precision."""
     field = blobs(_SHAPE, 9).astype(float)
     values = offset + scale * field
     if np.issubdtype(kind, np.integer):
@@ -44,14 +44,14 @@ def _in_units(offset: float, scale: float, kind: type[np.number], settings: Sett
 
 
 def _largest(settings: Settings) -> Outcome:
-    """White noise up to the largest float32, of either sign: differences go beyond."""
+    """Render white noise up to the largest float32; differences exceed it."""
     values = noise(_SHAPE, 12)
     values = (values * (3.3e38 / np.abs(values).max())).astype(np.float32)
     return check_views(settings, compressed(values), (0.0, 1e38, -2e38), grazing=_NOISE)
 
 
 def _integers(kind: str, settings: Settings) -> Outcome:
-    """White noise over the whole range of an integer type."""
+    """Render white noise over the whole range of an integer type."""
     about = np.iinfo(kind)
     values = np.random.default_rng(13).integers(about.min, about.max, _SHAPE, kind, endpoint=True)
     middle = (float(about.min) + float(about.max)) / 2
@@ -61,7 +61,7 @@ def _integers(kind: str, settings: Settings) -> Outcome:
 
 
 def _whole(isovalue: float, settings: Settings, **more: Any) -> Outcome:
-    """A field of whole values: edges and plateaus lie at the isovalue exactly."""
+    """Render whole values: edges and plateaus lie at the isovalue exactly."""
     values = np.clip(np.round(blobs((24, 20, 28), 10) + 1), 0, 2).astype(np.float32)
     return check_depths(settings, compressed(values), isovalue, grazing=1.0, **more)
 
@@ -77,7 +77,7 @@ def _constant(settings: Settings) -> Outcome:
 
 
 def _negative_zero(settings: Settings) -> Outcome:
-    """Zeros of either sign are at the isovalue zero, and inside."""
+    """Render zeros of either sign at isovalue zero: they are inside."""
     values = np.minimum(blobs(_SHAPE, 14), -0.0).astype(np.float32)
     signs = np.random.default_rng(15).choice([-0.0, 0.0], values.shape)
     values = np.where(values == 0, signs, values).astype(np.float32)
@@ -85,7 +85,7 @@ def _negative_zero(settings: Settings) -> Outcome:
 
 
 def _digits(settings: Settings) -> Outcome:
-    """An isovalue between two float32 values is not rounded to one of them."""
+    """Render an isovalue between two float32 values, which must not be rounded to one."""
     values = np.float32(1000) + 2.0**-14 * np.round(64 * blobs(_SHAPE, 9))
     return check_depths(settings, compressed(values.astype(np.float32)), 1000 + 2.0**-14 * 4.5)
 
@@ -94,7 +94,7 @@ def _digits(settings: Settings) -> Outcome:
 
 
 def _refused(attempt: Callable[[], object], *texts: str) -> Outcome:
-    """Does the one error come that names all of `texts`?"""
+    """Check that an attempt raises one error that names all of `texts`."""
     start = perf_counter()
     try:
         attempt()
@@ -121,7 +121,7 @@ def _no_isovalue(_settings: Settings) -> Outcome:
 
 
 def _no_isovalue_later(settings: Settings) -> Outcome:
-    """Set at the property, past Python's checks."""
+    """Set an isovalue of NaN at the property, past Python's checks."""
     view = Picture(compressed(blobs(_SHAPE, 9)), 0.1, settings.size)
     view.set_isovalue(float("nan"))
     try:
@@ -131,7 +131,7 @@ def _no_isovalue_later(settings: Settings) -> Outcome:
 
 
 def _hidden(cached: bool, settings: Settings) -> Outcome:
-    """NaN in a ball and here and there: only cells of numbers have a surface."""
+    """Render NaN in a ball and here and there: only cells of numbers have a surface."""
     shape = (26, 31, 29)
     place = np.stack(coordinates(shape), axis=-1)
     hole = np.linalg.norm(place - (20.0, 12.0, 11.0), axis=-1) < 8
