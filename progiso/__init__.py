@@ -4,22 +4,21 @@
 >>> from progiso.data import fetch
 >>> result = progiso.render(progiso.read(fetch("sphere", size=32)), isovalue=0.8)
 
-Volumes are compressed by `compress`, those larger than memory by `compress_file` and
-`compress_slabs`, at a rate that `least_rate` finds, read and written by `read` and `save`, contoured by `contour`, shown by `render`,
-by `make_isosurface` in a VTK renderer of your own, or by ``plotter.progiso.add_isosurface`` in
-pyvista.
+`compress` compresses volumes, `compress_file` and `compress_slabs` those larger than memory, at a
+rate that `least_rate` finds; `read` and `save` read and write them. `render` renders an image,
+`make_isosurface` makes a prop for your own VTK renderer, ``plotter.progiso.add_isosurface`` adds
+one to a pyvista plotter, and `contour` extracts triangles.
 """
 
 from __future__ import annotations
 
-from importlib import import_module
 from pkgutil import extend_path
+from typing import Any
 
-# In a checkout's root, `python -m progiso` finds these sources before the installed package: let
-# them share its compiled modules. Elsewhere this adds nothing.
+# In a checkout's root, `python -m progiso` finds these sources before the installed package: this
+# adds the latter's compiled modules. Elsewhere it changes nothing.
 __path__ = extend_path(__path__, __name__)
 
-from ._after_import import after_import  # noqa: E402
 from ._built import VERSION as __version__  # noqa: E402
 from ._built import VTK_VERSION as _VTK_VERSION  # noqa: E402
 
@@ -38,7 +37,7 @@ if _FOUND.split(".")[:2] != _VTK_VERSION.split(".")[:2]:
         "or build progiso for the latter"
     )
 
-# What the wrapped classes derive from has to be loaded before them.
+# The base classes of the wrapped classes have to be loaded before them.
 import vtkmodules.vtkCommonExecutionModel  # noqa: E402,F401
 import vtkmodules.vtkInteractionStyle  # noqa: E402,F401
 import vtkmodules.vtkRenderingFreeType  # noqa: E402,F401
@@ -76,6 +75,7 @@ from .vtkProgIsoKernels import (  # noqa: E402
 )
 
 __all__ = [
+    "__version__",
     "Camera",
     "RenderResult",
     "add_isosurface",
@@ -112,14 +112,10 @@ __all__ = [
 ]
 
 
-def __getattr__(name):
-    """Import what needs pyvista when it is asked for."""
+def __getattr__(name: str) -> Any:
+    """Import what needs pyvista only when it is used."""
     if name == "add_isosurface":
-        from .pyvista.plugin import add_isosurface
+        from .pyvista.surfaces import add_isosurface
 
         return add_isosurface
     raise AttributeError(f"module 'progiso' has no attribute '{name}'")
-
-
-# The plugin registers itself with pyvista when it is imported.
-after_import("pyvista", lambda: import_module(f"{__name__}.pyvista.plugin"))

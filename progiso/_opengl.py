@@ -1,4 +1,4 @@
-"""Which OpenGL window VTK should open where there is no display."""
+"""The choice of VTK's OpenGL window where there is no display."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from glob import glob
 from vtkmodules.vtkCommonCore import vtkVersion
 
 
-def choose_window():
+def choose_window() -> None:
     """Set ``VTK_DEFAULT_OPENGL_WINDOW`` where VTK's own choice would not find the best device.
 
-    Leaves everything alone on a machine with a display, when the variable is set already, on
-    other systems than Linux, and with a VTK before 9.4, which knows X11 only. Otherwise a usable
-    GPU is driven through EGL, and without one Mesa's software renderer through OSMesa. Where
-    neither library is found, VTK is left to its own search.
+    Changes nothing on a machine with a display, when the variable is set already, on systems other
+    than Linux, and with a VTK before 9.4, which supports X11 only. Otherwise VTK gets EGL where
+    there is a usable GPU, and OSMesa, a software renderer, where there is none. Where neither
+    library is found, VTK's own choice stands.
     """
     if not sys.platform.startswith("linux") or _needs_display():
         return
@@ -28,13 +28,13 @@ def choose_window():
         os.environ["VTK_DEFAULT_OPENGL_WINDOW"] = "vtkOSOpenGLRenderWindow"
 
 
-def check_display():
-    """Complain where VTK would abort the process.
+def check_display() -> None:
+    """Raise where VTK would abort the process.
 
     Raises
     ------
     RuntimeError
-        With a VTK that knows X11 only, when no display is set.
+        With a VTK that supports X11 only, when no display is set.
     """
     if _needs_display() and not os.environ.get("DISPLAY"):
         raise RuntimeError(
@@ -43,20 +43,20 @@ def check_display():
         )
 
 
-def _needs_display():
-    """Whether this VTK opens X11 windows only: on Linux, before 9.4."""
+def _needs_display() -> bool:
+    """Tell whether this VTK opens X11 windows only: on Linux, before 9.4."""
     version = (vtkVersion.GetVTKMajorVersion(), vtkVersion.GetVTKMinorVersion())
     return sys.platform.startswith("linux") and version < (9, 4)
 
 
-def _has_gpu():
-    """Whether a GPU is there for this user: NVIDIA's node with its EGL driver, or a render node."""
+def _has_gpu() -> bool:
+    """Tell whether this user has a GPU: NVIDIA's node with its EGL driver, or a render node."""
     if glob("/dev/nvidia[0-9]*") and _loads("libEGL_nvidia.so.0"):
         return True
     return any(os.access(node, os.R_OK | os.W_OK) for node in glob("/dev/dri/renderD*"))
 
 
-def _loads(library):
+def _loads(library: str) -> bool:
     try:
         ctypes.CDLL(library)
     except OSError:

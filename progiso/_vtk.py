@@ -1,15 +1,19 @@
-"""Small helpers around VTK that the rest of the package shares."""
+"""Helpers around VTK that the rest of the package shares."""
 
 from __future__ import annotations
 
 import re
 import warnings
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
-from vtkmodules.vtkCommonDataModel import vtkDataObject
-from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData
+from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkStreamingDemandDrivenPipeline
+
+from ._typing import Dimensions, Progress
 
 # "ERROR: In file.cxx, line 12\nvtkClass (0x55...): the message\n\n"
 _MESSAGE = re.compile(
@@ -20,7 +24,7 @@ _OBJECT = re.compile(r"^\w+ \((?:0x)?[0-9a-fA-F]+\)[^:]*: ")
 
 
 @contextmanager
-def captured_output():
+def captured_output() -> Iterator[vtkStringOutputWindow]:
     """Keep what VTK prints inside the block from standard error.
 
     Yields
@@ -40,7 +44,7 @@ def captured_output():
 
 
 @contextmanager
-def vtk_errors(what):
+def vtk_errors(what: str) -> Iterator[None]:
     """Turn what VTK prints as an error inside the block into one exception.
 
     Parameters
@@ -78,12 +82,14 @@ def vtk_errors(what):
         raise RuntimeError(f"{what}: {errors[0]}")
 
 
-def _messages(text):
+def _messages(text: str) -> tuple[list[str], list[str]]:
     """Split VTK's output into one-line errors and warnings, without object addresses."""
-    errors, failures, warned = [], [], []
+    errors: list[str] = []
+    failures: list[str] = []
+    warned: list[str] = []
     for kind, body in _MESSAGE.findall(text):
         message = " ".join(_OBJECT.sub("", body).split())
-        # The executive repeats that its algorithm failed, and says nothing of why.
+        # The executive repeats that its algorithm failed, without a reason.
         if "returned failure for request" in message:
             failures.append(message.split(" returned failure")[0] + " failed")
         else:
@@ -91,7 +97,7 @@ def _messages(text):
     return errors or failures, warned
 
 
-def image_data(image):
+def image_data(image: Any) -> vtkImageData:
     """Check that an argument is a `vtkImageData` and return it.
 
     Raises
@@ -105,20 +111,22 @@ def image_data(image):
     return image
 
 
-def observe_progress(algorithm, progress):
+def observe_progress(algorithm: vtkAlgorithm, progress: Progress | None) -> None:
     """Call ``progress(fraction)`` whenever a VTK algorithm reports progress."""
     if progress is not None:
-        algorithm.AddObserver("ProgressEvent", lambda source, _: progress(source.GetProgress()))
+        observe: Any = algorithm.AddObserver  # VTK's stubs do not know names of events
+        observe("ProgressEvent", lambda source, _: progress(source.GetProgress()))
 
 
-def dimensions_of(reader):
-    """Samples along x, y and z of what a reader will read, by its header."""
+def dimensions_of(reader: vtkAlgorithm) -> Dimensions:
+    """Return the samples along x, y and z of what a reader will read, by its header."""
     key = vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT()
     extent = [reader.GetOutputInformation(0).Get(key, i) for i in range(6)]
-    return tuple(last - first + 1 for first, last in zip(extent[::2], extent[1::2]))
+    width, height, depth = (b - a + 1 for a, b in zip(extent[::2], extent[1::2]))
+    return width, height, depth
 
 
-def place_as_read(image, reader):
+def place_as_read(image: vtkImageData, reader: vtkAlgorithm) -> None:
     """Give an image the spacing and origin of what a reader will read, by its header."""
     about = reader.GetOutputInformation(0)
     image.SetSpacing([about.Get(vtkDataObject.SPACING(), i) for i in range(3)])

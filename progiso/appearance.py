@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from numbers import Real
+from typing import Any
 
 from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction
+
+from ._typing import RGB
+from .vtkProgIsoKernels import vtkIsosurfaceVolume
 
 #: Most isovalues that a prop can show.
 MAX_ISOVALUES = 16
 
 
-def as_list(given, is_one):
-    """A list of what may be one or several.
+def as_list(given: Any, is_one: Callable[[Any], bool]) -> list[Any]:
+    """Make a list of one thing or of several.
 
     Parameters
     ----------
@@ -32,25 +37,25 @@ def as_list(given, is_one):
         return [given]  # whoever checks it says what is wrong with it
 
 
-def is_color(given):
-    """Whether something is a colour rather than a sequence of colours."""
+def is_color(given: Any) -> bool:
+    """Tell a colour from a sequence of colours."""
     return isinstance(given, str) or any(isinstance(part, Real) for part in given)
 
 
-def check_count(name, given, isovalues):
-    """Complain unless there is one of something, or one for each isovalue.
+def check_count(name: str, given: Sequence[object], isovalues: Sequence[object]) -> None:
+    """Check that there is one of something, or one for each isovalue.
 
     Raises
     ------
     ValueError
-        Naming what there is too much or too little of.
+        When there are more or fewer; the message has the name.
     """
     if len(given) not in (1, len(isovalues)):
         wanted = "1" if len(isovalues) == 1 else f"1 or {len(isovalues)}"
         raise ValueError(f"{name}: {len(given)} for {len(isovalues)} isovalues; give {wanted}")
 
 
-def set_colors(prop, colors):
+def set_colors(prop: vtkIsosurfaceVolume, colors: Sequence[RGB]) -> None:
     """Give a prop's i-th isovalue the i-th colour, also when it is changed later.
 
     Parameters
@@ -65,7 +70,7 @@ def set_colors(prop, colors):
     _follow_isovalues(prop, function, function.AddRGBPoint, colors)
 
 
-def set_opacities(prop, opacities):
+def set_opacities(prop: vtkIsosurfaceVolume, opacities: Sequence[float]) -> None:
     """Give a prop's i-th isovalue the i-th opacity, also when it is changed later.
 
     Parameters
@@ -80,13 +85,18 @@ def set_opacities(prop, opacities):
     _follow_isovalues(prop, function, function.AddPoint, [(opacity,) for opacity in opacities])
 
 
-def _follow_isovalues(prop, function, add, entries):
+def _follow_isovalues(
+    prop: vtkIsosurfaceVolume,
+    function: vtkColorTransferFunction | vtkPiecewiseFunction,
+    add: Callable[..., object],
+    entries: Sequence[tuple[float, ...]],
+) -> None:
     """Keep a transfer function's points at the isovalues."""
-    places = []
+    places: list[float] = []
 
-    # Before every render: vtkContourValues reports a change before it makes it. No reference to
-    # the prop in here, which holds the observer.
-    def follow(prop, _event):
+    # Runs before every render, since vtkContourValues reports a change before it makes it. The
+    # prop owns this observer: a reference to the prop in it would keep both alive.
+    def follow(prop: vtkIsosurfaceVolume, _event: object) -> None:
         isovalues = prop.GetProperty().GetIsoSurfaceValues()
         now = [isovalues.GetValue(i) for i in range(isovalues.GetNumberOfContours())]
         if now != places:

@@ -1,10 +1,24 @@
-"""Cameras as plain values, and the orbit that every measurement uses."""
+"""Cameras as plain values, and the orbit that benchmarks and verification use."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import KW_ONLY, asdict, dataclass
 from itertools import product
+from typing import Any, Protocol
+
+from vtkmodules.vtkRenderingCore import vtkCamera
+
+from ._typing import Vector
+
+_Vector3 = tuple[float, float, float]
+
+
+class _HasBounds(Protocol):
+    """An image, a mesh or a prop."""
+
+    def GetBounds(self) -> Sequence[float]: ...
 
 
 @dataclass(frozen=True)
@@ -28,15 +42,16 @@ class Camera:
     False
     """
 
-    position: tuple
-    focal_point: tuple
-    view_up: tuple
+    position: tuple[float, ...]
+    focal_point: tuple[float, ...]
+    view_up: tuple[float, ...]
+    _: KW_ONLY
     view_angle: float = 30.0
     parallel: bool = False
     parallel_scale: float = 1.0
 
     @classmethod
-    def from_vtk(cls, camera):
+    def from_vtk(cls, camera: vtkCamera) -> Camera:
         """Copy a `vtkCamera`.
 
         Returns
@@ -47,12 +62,12 @@ class Camera:
             camera.GetPosition(),
             camera.GetFocalPoint(),
             camera.GetViewUp(),
-            camera.GetViewAngle(),
-            bool(camera.GetParallelProjection()),
-            camera.GetParallelScale(),
+            view_angle=camera.GetViewAngle(),
+            parallel=bool(camera.GetParallelProjection()),
+            parallel_scale=camera.GetParallelScale(),
         )
 
-    def apply(self, camera):
+    def apply(self, camera: vtkCamera) -> None:
         """Set a `vtkCamera` to this one; its clipping range is left to the renderer."""
         camera.SetPosition(self.position)
         camera.SetFocalPoint(self.focal_point)
@@ -61,8 +76,8 @@ class Camera:
         camera.SetParallelProjection(self.parallel)
         camera.SetParallelScale(self.parallel_scale)
 
-    def to_dict(self):
-        """The camera as JSON-ready values; `parallel_scale` only where it matters.
+    def to_dict(self) -> dict[str, Any]:
+        """Return the camera as JSON-ready values; `parallel_scale` only of a parallel view.
 
         Returns
         -------
@@ -74,8 +89,8 @@ class Camera:
         return values
 
 
-def orbit_camera(target, i, n):
-    """Camera `i` of an orbit of `n` around a volume: the one definition that everything uses.
+def orbit_camera(target: _HasBounds | Vector, i: int, n: int) -> Camera:
+    """Return camera `i` of an orbit of `n` around a volume.
 
     The positions lie on a Fibonacci sphere about the centre of the volume's axis-aligned bounds,
     its radius 1.5 times the largest side of these bounds: y = (2i/n − 1) + 1/n, r = √(1 − y²),
@@ -114,19 +129,20 @@ view_angle=50.0, parallel=False, parallel_scale=1.0)
     r = math.sqrt(1 - y * y)
     phi = i * math.pi * (3 - math.sqrt(5))
     direction = (r * math.cos(phi), y, r * math.sin(phi))
-    position = tuple(c + radius * d for c, d in zip(centre, direction))
-    return Camera(position, centre, (0.0, 1.0, 0.0), 50.0)
+    position = _vector(c + radius * d for c, d in zip(centre, direction))
+    return Camera(position, centre, (0.0, 1.0, 0.0), view_angle=50.0)
 
 
 def view_camera(
-    target,
-    direction=(0.45, 1.0, 0.3),
-    view_up=(0.0, 0.0, 1.0),
-    parallel=False,
-    aspect=1.0,
-    zoom=1.0,
-):
-    """Camera that looks at a volume's centre and just fits its bounds into the picture.
+    target: _HasBounds | Vector,
+    *,
+    direction: Vector = (0.45, 1.0, 0.3),
+    view_up: Vector = (0.0, 0.0, 1.0),
+    parallel: bool = False,
+    aspect: float = 1.0,
+    zoom: float = 1.0,
+) -> Camera:
+    """Return a camera that looks at a volume's centre and just fits its bounds into the picture.
 
     Parameters
     ----------
@@ -167,24 +183,36 @@ def view_camera(
     heights = [max(abs(_dot(c, up)), abs(_dot(c, right)) / aspect) / zoom for c in corners]
     slope = math.tan(math.radians(15))
     distance = max(_dot(c, forward) + h / slope for c, h in zip(corners, heights))
-    position = tuple(c + distance * f for c, f in zip(centre, forward))
-    return Camera(position, centre, tuple(map(float, view_up)), 30.0, parallel, max(heights))
+    position = _vector(c + distance * f for c, f in zip(centre, forward))
+    return Camera(
+        position,
+        centre,
+        _vector(view_up),
+        view_angle=30.0,
+        parallel=parallel,
+        parallel_scale=max(heights),
+    )
 
 
-def _centre_and_sides(target):
-    """Centre and side lengths of bounds, or of what has bounds."""
+def _vector(numbers: Iterable[float]) -> _Vector3:
+    x, y, z = map(float, numbers)
+    return x, y, z
+
+
+def _centre_and_sides(target: _HasBounds | Vector) -> tuple[_Vector3, _Vector3]:
+    """Return the centre and the side lengths of bounds, or of what has bounds."""
     bounds = target.GetBounds() if hasattr(target, "GetBounds") else target
     if len(bounds) != 6:
         raise ValueError(f"bounds are six numbers, got {len(bounds)}")
     low, high = bounds[0::2], bounds[1::2]
-    sides = tuple(float(b - a) for a, b in zip(low, high))
+    sides = _vector(b - a for a, b in zip(low, high))
     if not all(math.isfinite(side) for side in sides) or min(sides) < 0 or max(sides) == 0:
         raise ValueError(f"the bounds {tuple(bounds)} are empty")
-    return tuple(float(a + b) / 2 for a, b in zip(low, high)), sides
+    return _vector(float(a + b) / 2 for a, b in zip(low, high)), sides
 
 
-def _basis(direction, view_up):
-    """Unit vectors to the right, up and towards the camera."""
+def _basis(direction: Vector, view_up: Vector) -> tuple[_Vector3, _Vector3, _Vector3]:
+    """Return the unit vectors to the right, up and towards the camera."""
     right = _cross(view_up, direction)
     lengths = math.hypot(*direction) * math.hypot(*view_up)
     if not lengths > 0 or not math.hypot(*right) > 1e-6 * lengths:
@@ -195,14 +223,14 @@ def _basis(direction, view_up):
     return right, _cross(forward, right), forward
 
 
-def _dot(a, b):
+def _dot(a: Vector, b: Vector) -> float:
     return sum(x * y for x, y in zip(a, b))
 
 
-def _cross(a, b):
+def _cross(a: Vector, b: Vector) -> _Vector3:
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
-def _unit(a):
+def _unit(a: Vector) -> _Vector3:
     length = math.hypot(*a)
-    return tuple(x / length for x in a)
+    return _vector(x / length for x in a)

@@ -1,11 +1,16 @@
-"""Compressing and decompressing images, as plain functions over the VTK filters."""
+"""Compression and decompression of images: plain functions over the VTK filters."""
 
 from __future__ import annotations
 
-from vtkmodules.vtkCommonCore import reference
+from typing import Any
 
+from vtkmodules.vtkCommonCore import reference, vtkDataArray
+from vtkmodules.vtkCommonDataModel import vtkImageData
+
+from ._typing import ImageLike, Progress
 from ._vtk import image_data, observe_progress, vtk_errors
 from .geometry import as_image
+from .options import CompressionOptions
 from .vtkProgIsoFilters import vtkCompressedVolume, vtkImageZFPCompress, vtkImageZFPDecompress
 
 _POINTS, _CELLS = 0, 1  # vtkDataObject::FieldAssociations
@@ -13,10 +18,19 @@ _POINTS, _CELLS = 0, 1  # vtkDataObject::FieldAssociations
 GHOSTS = "vtkGhostType"  # vtkDataSetAttributes::GhostArrayName()
 
 
-def compress(image, rate=8.0, array=None, component=0, threads=0, progress=None, mask_nan=False):
+def compress(
+    image: ImageLike,
+    *,
+    rate: float = 8.0,
+    array: str | None = None,
+    component: int = 0,
+    mask_nan: bool = False,
+    threads: int = 0,
+    progress: Progress | None = None,
+) -> vtkImageData:
     """Compress one array of an image with fixed-rate ZFP.
 
-    What ghost arrays of the image hide (``vtkGhostType``), of points or cells, stays hidden: an
+    Points and cells that a ghost array of the image hides (``vtkGhostType``) stay hidden: an
     isosurface has a hole there.
 
     Parameters
@@ -32,19 +46,19 @@ def compress(image, rate=8.0, array=None, component=0, threads=0, progress=None,
         point array, else the active cell scalars, else the first cell array.
     component : int, default: 0
         Component of that array.
+    mask_nan : bool, default: False
+        Whether NaN and infinite samples are hidden, too; otherwise they are an error.
     threads : int, default: 0
         Threads that encode; 0 for one per core.
     progress : callable, optional
         Called with the fraction done, from 0 to 1.
-    mask_nan : bool, default: False
-        Whether NaN and infinite samples are hidden, too; else they are an error.
 
     Returns
     -------
     vtkmodules.vtkCommonDataModel.vtkImageData
         A compressed volume: the same geometry and no scalars, the stream in the field data.
         Any VTI writer stores it. Where float32 cannot hold the values (small differences on a large
-        value, 1e300, denormals) the stream has units of its own, see `describe`.
+        value, 1e300, denormals) the stream has custom units, see `describe`.
 
     Raises
     ------
@@ -53,8 +67,8 @@ def compress(image, rate=8.0, array=None, component=0, threads=0, progress=None,
     ValueError
         When there is no such array or the rate is out of range.
     RuntimeError
-        When the filter refuses: no such component, a flat image, NaN or infinite
-        samples, an image that is compressed already.
+        When there is no such component, the image is flat or compressed already, or a sample is
+        NaN or infinite.
 
     Examples
     --------
@@ -63,27 +77,45 @@ def compress(image, rate=8.0, array=None, component=0, threads=0, progress=None,
     >>> progiso.is_compressed(volume)
     True
     """
+    options = CompressionOptions(
+        rate=rate,
+        array=array,
+        component=component,
+        mask_nan=mask_nan,
+        threads=threads,
+        progress=progress,
+    )
+    return compress_with(image, options)
+
+
+def compress_with(image: ImageLike, options: CompressionOptions) -> vtkImageData:
+    """Compress an image; options, result and errors as in `compress`."""
     image = as_image(image)
     if is_compressed(image):
         raise RuntimeError("cannot compress: the image is a compressed volume already")
-    if not 0 < rate <= 32:
-        raise ValueError(f"rate must be in (0, 32] bits per sample, got {rate:g}")
     compressor = vtkImageZFPCompress()
     compressor.SetInputData(image)
-    compressor.SetRate(rate)
-    compressor.SetComponent(component)
-    compressor.SetNumberOfThreads(threads)
-    compressor.SetMaskNonFinite(bool(mask_nan))
-    if array is not None:
-        _, of_cells = find_array(image, array)
-        compressor.SetInputArrayToProcess(0, 0, 0, _CELLS if of_cells else _POINTS, array)
-    observe_progress(compressor, progress)
+    compressor.SetRate(checked_rate(options.rate))
+    compressor.SetComponent(options.component)
+    compressor.SetNumberOfThreads(options.threads)
+    compressor.SetMaskNonFinite(bool(options.mask_nan))
+    if options.array is not None:
+        _, of_cells = find_array(image, options.array)
+        compressor.SetInputArrayToProcess(0, 0, 0, _CELLS if of_cells else _POINTS, options.array)
+    observe_progress(compressor, options.progress)
     with vtk_errors("cannot compress"):
         compressor.Update()
     return compressor.GetOutput()
 
 
-def find_array(image, array=None):
+def checked_rate(rate: float) -> float:
+    """Return a rate, or raise `ValueError` when it is out of range."""
+    if not 0 < rate <= 32:
+        raise ValueError(f"rate must be in (0, 32] bits per sample, got {rate:g}")
+    return rate
+
+
+def find_array(image: vtkImageData, array: str | None = None) -> tuple[vtkDataArray, bool]:
     """Find an array of a plain image.
 
     Parameters
@@ -124,8 +156,10 @@ def find_array(image, array=None):
     raise ValueError(f"the image has no {wanted}; it has: {listed}")
 
 
-def decompress(image, threads=0, progress=None):
-    """Decompress a compressed volume into scalars: float32, or float64 where its stream has units.
+def decompress(
+    image: vtkImageData, *, threads: int = 0, progress: Progress | None = None
+) -> vtkImageData:
+    """Decompress a compressed volume into scalars.
 
     Parameters
     ----------
@@ -140,7 +174,8 @@ def decompress(image, threads=0, progress=None):
     -------
     vtkmodules.vtkCommonDataModel.vtkImageData
         The same geometry, with the values under the original array's name as point or cell
-        scalars. Hidden samples are NaN, and marked in a ghost array, as hidden cells are.
+        scalars: float32, or float64 where the stream has custom units. Hidden samples are NaN and
+        marked in a ghost array, as hidden cells are.
 
     Raises
     ------
@@ -152,7 +187,7 @@ def decompress(image, threads=0, progress=None):
     Examples
     --------
     >>> import numpy as np, progiso
-    >>> image = progiso.image_from_array(np.arange(512.0), (8, 8, 8), "ramp")
+    >>> image = progiso.image_from_array(np.arange(512.0), (8, 8, 8), name="ramp")
     >>> progiso.decompress(progiso.compress(image)).GetPointData().GetScalars().GetName()
     'ramp'
     """
@@ -165,8 +200,8 @@ def decompress(image, threads=0, progress=None):
     return decompressor.GetOutput()
 
 
-def as_compressed(image, rate=8.0, array=None, component=0, progress=None, mask_nan=False):
-    """Compress an image unless it is a compressed volume already; parameters as in `compress`.
+def as_compressed(image: ImageLike, options: CompressionOptions) -> vtkImageData:
+    """Compress an image unless it is a compressed volume already; options as in `compress`.
 
     Raises
     ------
@@ -175,14 +210,19 @@ def as_compressed(image, rate=8.0, array=None, component=0, progress=None, mask_
     """
     image = as_image(image)
     if not is_compressed(image):
-        return compress(image, rate, array, component, progress=progress, mask_nan=mask_nan)
-    held = describe(image)["array"]
-    if array not in (None, held):
-        raise ValueError(f"the compressed volume has no array {array!r}; it has: {held!r}")
+        return compress_with(image, options)
+    check_array(image, options.array)
     return image
 
 
-def is_compressed(image):
+def check_array(volume: vtkImageData, array: str | None) -> None:
+    """Raise `ValueError` unless an array, if named, is the one that a compressed volume holds."""
+    held = describe(volume)["array"]
+    if array not in (None, held):
+        raise ValueError(f"the compressed volume has no array {array!r}; it has: {held!r}")
+
+
+def is_compressed(image: object) -> bool:
     """Tell whether a data object claims to be a compressed volume.
 
     Examples
@@ -194,7 +234,7 @@ def is_compressed(image):
     return bool(vtkCompressedVolume.IsCompressed(image))
 
 
-def describe(image):
+def describe(image: vtkImageData) -> dict[str, Any]:
     """Describe a compressed volume by its metadata.
 
     Parameters
@@ -206,8 +246,8 @@ def describe(image):
     -------
     dict
         ``rate`` (bits per sample), ``block_bits``, ``samples`` per axis, ``blocks`` in total,
-        ``stream_bytes``, ``range``, ``offset`` and ``scale`` (a value is offset + scale times what
-        the stream has), ``array``, ``component``, ``association`` ("point" or
+        ``stream_bytes``, ``range``, ``offset`` and ``scale`` (the stream's units: a value is
+        offset + scale times the stream's), ``array``, ``component``, ``association`` ("point" or
         "cell") and ``scalar_type`` (VTK's number of the original type).
 
     Raises

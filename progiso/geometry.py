@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
+import numpy.typing as npt
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
+from ._typing import Array, ImageLike
 from ._vtk import image_data
 
 
-def image_from_array(values, dimensions, name="scalars", components=1):
+def image_from_array(
+    values: Array, dimensions: Sequence[int], *, name: str = "scalars", components: int = 1
+) -> vtkImageData:
     """Wrap samples as the active point scalars of a `vtkImageData`, without copying them.
 
     Parameters
@@ -54,7 +60,7 @@ def image_from_array(values, dimensions, name="scalars", components=1):
     return image
 
 
-def samples_of(image):
+def samples_of(image: vtkImageData) -> Array:
     """View an image's active scalars as an array; the inverse of `image_from_array`.
 
     Parameters
@@ -72,8 +78,8 @@ def samples_of(image):
     return vtk_to_numpy(points or image.GetCellData().GetScalars()).reshape(size[::-1])
 
 
-def as_image(volume):
-    """Make an image of whatever may be passed for one.
+def as_image(volume: ImageLike) -> vtkImageData:
+    """Make an image of an array; an image is returned as it is.
 
     Parameters
     ----------
@@ -110,10 +116,10 @@ def as_image(volume):
     elif values.dtype.kind == "f" and values.dtype.itemsize not in (4, 8):  # VTK has no such type
         values = values.astype(np.float32)
     native = values.astype(values.dtype.newbyteorder("="), copy=False)
-    return image_from_array(native.ravel(order="F"), volume.shape, "values")
+    return image_from_array(native.ravel(order="F"), volume.shape, name="values")
 
 
-def set_axes(image, axes, origin):
+def set_axes(image: vtkImageData, axes: npt.ArrayLike, origin: npt.ArrayLike) -> None:
     """Place an image in the world by the vectors from one sample to the next.
 
     Parameters
@@ -146,14 +152,14 @@ def set_axes(image, axes, origin):
     image.SetDirectionMatrix(*direction.ravel())
 
 
-def axes_of(image):
-    """World vectors between neighbouring samples, as columns; the inverse of `set_axes`."""
+def axes_of(image: vtkImageData) -> npt.NDArray[np.float64]:
+    """Return the world vectors between neighbouring samples as columns; see `set_axes`."""
     matrix = image.GetDirectionMatrix()
     direction = np.array([[matrix.GetElement(i, j) for j in range(3)] for i in range(3)])
     return direction * np.asarray(image.GetSpacing())
 
 
-def cell_centres(image):
+def cell_centres(image: vtkImageData) -> vtkImageData:
     """Make an image whose points are the centres of another's cells.
 
     Parameters

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from numbers import Real
+from typing import Any
 
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction, vtkVolumeProperty
 
+from ._typing import RGB, ImageLike, Isovalues
 from .appearance import MAX_ISOVALUES, as_list, check_count, is_color, set_colors, set_opacities
 from .geometry import as_image
+from .options import RenderOptions, SurfaceStyle
 from .vtkProgIsoKernels import vtkIsosurfaceVolume, vtkProgressiveIsosurfaceMapper
 
 #: Most blocks that a ray tests ahead in one pass.
@@ -16,20 +20,22 @@ MAX_SPECULATION = 64
 
 
 def make_isosurface(
-    image,
-    isovalue,
-    color=(1.0, 1.0, 1.0),
-    rate=8.0,
-    speculation=True,
-    memory_budget=0,
-    shade=True,
-    ambient=0.05,
-    diffuse=0.8,
-    specular=0.15,
-    specular_power=20.0,
-    opacity=1.0,
-    mask_nan=False,
-):
+    image: ImageLike,
+    isovalue: Isovalues,
+    *,
+    color: RGB | Sequence[RGB] | vtkColorTransferFunction = (1.0, 1.0, 1.0),
+    opacity: float | Sequence[float] = 1.0,
+    shade: bool = True,
+    ambient: float = 0.05,
+    diffuse: float = 0.8,
+    specular: float = 0.15,
+    specular_power: float = 20.0,
+    speculation: bool | int = True,
+    memory_budget: int = 0,
+    detailed: bool = False,
+    rate: float = 8.0,
+    mask_nan: bool = False,
+) -> vtkIsosurfaceVolume:
     """Make a prop that shows isosurfaces of a plain or compressed volume.
 
     Parameters
@@ -42,23 +48,26 @@ def make_isosurface(
     color : sequence of 3 float, a sequence of such, or vtkColorTransferFunction, default: white
         Red, green and blue from 0 to 1: one colour for all isovalues, or one for each, which it
         keeps when it is changed. A transfer function gives the colours at the isovalues.
-    rate : float, default: 8
-        Bits per sample for a plain image, in (0, 32].
+    opacity : float or sequence of float, default: 1
+        One for all isovalues, or one for each: 0 hides a surface; below 1, what lies behind it
+        shines through.
+    shade : bool, default: True
+        Whether lights shade the surface; otherwise it has the plain colour.
+    ambient, diffuse, specular, specular_power : float
+        Material, as in `vtkVolumeProperty`: the first three from 0 to 1, the last to 128.
     speculation : bool or int, default: True
         Whether rays test several blocks ahead in one pass, or how many at most (1 to 64).
     memory_budget : int, default: 0
         Bound in bytes on the GPU memory beside the compressed volume; 0 for the mapper's own
         choice.
-    shade : bool, default: True
-        Whether light falls on the surface; without, it has the plain colour.
-    ambient, diffuse, specular, specular_power : float
-        Material, as in `vtkVolumeProperty`: the first three from 0 to 1.
-    opacity : float or sequence of float, default: 1
-        One for all isovalues, or one for each: 0 hides a surface, below 1 what lies behind it
-        shines through.
+    detailed : bool, default: False
+        Whether the statistics include the time of each stage and the distinct blocks of each
+        pass, which takes time itself.
+    rate : float, default: 8
+        Bits per sample for a plain image, in (0, 32].
     mask_nan : bool, default: False
         Whether NaN and infinite samples of a plain image are hidden, so that the surface has a hole
-        there; else they are an error of the mapper.
+        there; otherwise they are an error of the mapper.
 
     Returns
     -------
@@ -81,82 +90,106 @@ def make_isosurface(
     >>> renderer = vtkRenderer()
     >>> renderer.AddVolume(progiso.make_isosurface(image, 0.8, color=(0.9, 0.85, 0.75)))
     """
+    style = SurfaceStyle(
+        color=color,
+        opacity=opacity,
+        shade=shade,
+        ambient=ambient,
+        diffuse=diffuse,
+        specular=specular,
+        specular_power=specular_power,
+    )
+    options = RenderOptions(speculation=speculation, memory_budget=memory_budget, detailed=detailed)
+    prop = style_isosurface(image, isovalue, style, options)
+    prop.GetMapper().SetRate(_in_range("rate", rate, 0, 32, above=True))
+    prop.GetMapper().SetMaskNonFinite(bool(mask_nan))
+    return prop
+
+
+def style_isosurface(
+    image: ImageLike, isovalue: Isovalues, style: SurfaceStyle, options: RenderOptions
+) -> vtkIsosurfaceVolume:
+    """Make a prop as `make_isosurface` does; a plain image is compressed at the mapper's own rate."""
     mapper = vtkProgressiveIsosurfaceMapper()
     mapper.SetInputData(as_image(image))
-    mapper.SetRate(_in_range("rate", rate, 0, 32, above=True))
-    mapper.SetMaskNonFinite(bool(mask_nan))
-    mapper.SetLitLikeMeshes(True)  # it takes the place of a contour's mesh
-    mapper.SetSpeculationLimit(_speculation_limit(speculation))
-    mapper.SetMemoryBudget(int(_in_range("memory_budget", memory_budget, 0, 2**62)))
+    mapper.SetLitLikeMeshes(True)  # users expect the light that a contour's mesh would get
+    mapper.SetSpeculationLimit(_speculation_limit(options.speculation))
+    mapper.SetMemoryBudget(int(_in_range("memory_budget", options.memory_budget, 0, 2**62)))
+    mapper.SetDetailedStatistics(bool(options.detailed))
+    prop = vtkIsosurfaceVolume()
+    prop.SetMapper(mapper)
+    prop.SetProperty(_material(style))
+    _set_isovalues(prop, isovalue, style)
+    return prop
+
+
+def _material(style: SurfaceStyle) -> vtkVolumeProperty:
     properties = vtkVolumeProperty()
-    properties.SetShade(bool(shade))
-    properties.SetAmbient(_in_range("ambient", ambient, 0, 1))
-    properties.SetDiffuse(_in_range("diffuse", diffuse, 0, 1))
-    properties.SetSpecular(_in_range("specular", specular, 0, 1))
-    properties.SetSpecularPower(_in_range("specular_power", specular_power, 0, 128))
-    volume = vtkIsosurfaceVolume()
-    volume.SetMapper(mapper)
-    volume.SetProperty(properties)
-    _set_isovalues(volume, isovalue, color, opacity)
-    return volume
+    properties.SetShade(bool(style.shade))
+    properties.SetAmbient(_in_range("ambient", style.ambient, 0, 1))
+    properties.SetDiffuse(_in_range("diffuse", style.diffuse, 0, 1))
+    properties.SetSpecular(_in_range("specular", style.specular, 0, 1))
+    properties.SetSpecularPower(_in_range("specular_power", style.specular_power, 0, 128))
+    return properties
 
 
-def _set_isovalues(volume, isovalue, color, opacity):
-    """Isovalues with the colours and opacities that they keep."""
+def _set_isovalues(prop: vtkIsosurfaceVolume, isovalue: Isovalues, style: SurfaceStyle) -> None:
+    """Set isovalues with the colours and opacities that they keep."""
     given = [isovalue] if isinstance(isovalue, str) else as_list(isovalue, _is_number)
     if not 1 <= len(given) <= MAX_ISOVALUES:
         raise ValueError(f"isovalue: give 1 to {MAX_ISOVALUES} isovalues, not {len(given)}")
-    opacities = _opacities(opacity)
+    opacities = _opacities(style.opacity)
     check_count("opacity", opacities, given)
     for i, value in enumerate(given):
-        volume.GetProperty().GetIsoSurfaceValues().SetValue(i, _finite("isovalue", value))
-    set_opacities(volume, opacities)
-    if isinstance(color, vtkColorTransferFunction):
-        volume.GetProperty().SetColor(color)
+        prop.GetProperty().GetIsoSurfaceValues().SetValue(i, _finite("isovalue", value))
+    set_opacities(prop, opacities)
+    if isinstance(style.color, vtkColorTransferFunction):
+        prop.GetProperty().SetColor(style.color)
     else:
-        set_colors(volume, _rgb_colors(color, given))
+        set_colors(prop, _rgb_colors(style.color, given))
 
 
-def _opacities(opacity):
+def _opacities(opacity: float | Sequence[float]) -> list[float]:
     given = [opacity] if isinstance(opacity, str) else as_list(opacity, _is_number)
     return [_in_range("opacity", each, 0, 1) for each in given]
 
 
-def _rgb_colors(color, isovalues):
-    """Colours as tuples, one or as many as isovalues."""
+def _rgb_colors(color: RGB | Sequence[RGB], isovalues: Sequence[object]) -> list[RGB]:
+    """Return colours as tuples, one or as many as isovalues."""
     colors = [_rgb(each) for each in as_list(color, is_color)]
     check_count("color", colors, isovalues)
     return colors
 
 
-def _rgb(color):
+def _rgb(color: Any) -> RGB:
     wanted = f"color must be red, green and blue from 0 to 1, got {color!r}"
     if isinstance(color, str) or not hasattr(color, "__len__"):
         raise TypeError(wanted)
     if len(color) != 3:
         raise ValueError(wanted)
-    return tuple(_in_range("color", part, 0, 1) for part in color)
+    red, green, blue = (_in_range("color", part, 0, 1) for part in color)
+    return red, green, blue
 
 
-def _speculation_limit(speculation):
+def _speculation_limit(speculation: bool | int) -> int:
     if isinstance(speculation, bool):
         return MAX_SPECULATION if speculation else 1
     return int(_in_range("speculation", speculation, 1, MAX_SPECULATION))
 
 
-def _is_number(value):
+def _is_number(value: object) -> bool:
     return isinstance(value, Real)
 
 
-def _finite(name, value):
-    if not isinstance(value, Real) or not math.isfinite(value):
+def _finite(name: str, value: Any) -> float:
+    if not _is_number(value) or not math.isfinite(value):
         raise ValueError(f"{name} must be a finite number, got {value!r}")
     return float(value)
 
 
-def _in_range(name, value, low, high, above=False):
-    """Check low ≤ value ≤ high, or low < value when `above`."""
-    if not isinstance(value, Real):
+def _in_range(name: str, value: Any, low: float, high: float, *, above: bool = False) -> Any:
+    """Return a number if low ≤ value ≤ high, or low < value when `above`; otherwise raise."""
+    if not _is_number(value):
         raise TypeError(f"{name} must be a number, got {value!r}")
     if not (low < value if above else low <= value) or not value <= high:
         bounds = f"{'(' if above else '['}{low}, {high}]"

@@ -3,40 +3,46 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from numbers import Real
+from typing import Any
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
 from vtkmodules.vtkIOGeometry import vtkOBJWriter, vtkSTLWriter
 from vtkmodules.vtkIOPLY import vtkPLYWriter
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
+from ._typing import FilePath, ImageLike, Isovalues, Progress
 from ._vtk import observe_progress, vtk_errors
-from .compression import as_compressed, find_array, is_compressed
+from .appearance import as_list
+from .compression import as_compressed, check_array, find_array, is_compressed
 from .geometry import as_image, cell_centres
 from .io.files import atomic_path, check_output
+from .options import CompressionOptions
 from .vtkProgIsoFilters import vtkZFPContour
 
 
 def contour(
-    image,
-    isovalues,
-    rate=None,
-    array=None,
-    component=0,
-    normals=True,
-    gradients=False,
-    scalars=True,
-    threads=0,
-    progress=None,
-    mask_nan=False,
-):
+    image: ImageLike,
+    isovalues: Isovalues,
+    *,
+    normals: bool = True,
+    gradients: bool = False,
+    scalars: bool = True,
+    rate: float | None = None,
+    array: str | None = None,
+    component: int = 0,
+    mask_nan: bool = False,
+    threads: int = 0,
+    progress: Progress | None = None,
+) -> vtkPolyData:
     """Extract isosurfaces as triangles.
 
-    Of a compressed volume only a few bricks are decoded at a time; the surface is the one that
-    `vtkFlyingEdges3D` makes of the decoded image, in every bit. A plain image is given to
+    Of a compressed volume only a few bricks are decoded at a time; the surface is bit for bit the
+    one that `vtkFlyingEdges3D` makes of the decoded image. A plain image is given to
     `vtkFlyingEdges3D` itself, unless it is to be compressed first.
 
     Parameters
@@ -45,6 +51,10 @@ def contour(
         Plain, or a compressed volume; at least 2 samples along every axis. Arrays as in `compress`.
     isovalues : float or sequence of float
         In the units of the image's values.
+    normals, gradients : bool, default: True, False
+        Whether to compute the point arrays ``Normals``, of unit length, and ``Gradients``.
+    scalars : bool, default: True
+        Whether to store the isovalue at every point, under the array's name.
     rate : float, optional
         Compress a plain image first, to this many bits per sample, in (0, 32].
     array : str, optional
@@ -52,16 +62,12 @@ def contour(
         in their centres.
     component : int, default: 0
         Component of that array.
-    normals, gradients : bool, default: True, False
-        Whether to compute the point arrays ``Normals``, of unit length, and ``Gradients``.
-    scalars : bool, default: True
-        Whether to store the isovalue at every point, under the array's name.
+    mask_nan : bool, default: False
+        Whether NaN and infinite samples are hidden where a plain image is compressed first.
     threads : int, default: 0
         Threads that decode and contour a compressed volume; 0 for one per core.
     progress : callable, optional
         Called with the fraction done, from 0 to 1, for a compressed volume.
-    mask_nan : bool, default: False
-        Whether NaN and infinite samples are hidden where a plain image is compressed first.
 
     Returns
     -------
@@ -92,9 +98,10 @@ def contour(
     if mask_nan and rate is None and not is_compressed(image):
         raise ValueError("mask_nan takes a rate: the contour of a plain image hides nothing")
     if rate is not None:
-        image = as_compressed(image, rate, array, component, mask_nan=mask_nan)
+        options = CompressionOptions(rate=rate, array=array, component=component, mask_nan=mask_nan)
+        image = as_compressed(image, options)
     if is_compressed(image):
-        as_compressed(image, array=array)  # refuses another array than the one it has
+        check_array(image, array)
         extractor = vtkZFPContour()
         extractor.SetNumberOfThreads(threads)
         extractor.SetInputData(image)
@@ -111,9 +118,9 @@ def contour(
     return extractor.GetOutput()
 
 
-def _isovalues(isovalues):
-    """Numbers of one or several isovalues."""
-    values = [isovalues] if isinstance(isovalues, Real) else list(isovalues)
+def _isovalues(isovalues: Isovalues) -> list[float]:
+    """Return one or several isovalues as a list, or raise where one is no finite number."""
+    values = as_list(isovalues, lambda given: isinstance(given, Real))
     for value in values:
         if not isinstance(value, Real):
             raise TypeError(f"an isovalue must be a number, got {value!r}")
@@ -124,8 +131,8 @@ def _isovalues(isovalues):
     return [float(value) for value in values]
 
 
-def _plain_contour(image, array, component):
-    """VTK's own extractor, set up for an array of a plain image."""
+def _plain_contour(image: vtkImageData, array: str | None, component: int) -> vtkFlyingEdges3D:
+    """Set up VTK's own extractor for an array of a plain image."""
     chosen, of_cells = find_array(image, array)
     samples = vtkImageData()
     samples.CopyStructure(cell_centres(image) if of_cells else image)
@@ -135,7 +142,7 @@ def _plain_contour(image, array, component):
     components = chosen.GetNumberOfComponents()
     if not 0 <= component < components:
         raise ValueError(f"component is {component}, but the array has {components}")
-    if components > 1:  # VTK 9.2's extractor takes the first, whichever it is told
+    if components > 1:  # VTK 9.2's extractor always takes the first component
         values = np.ascontiguousarray(vtk_to_numpy(chosen)[:, component])
         name, chosen = chosen.GetName(), numpy_to_vtk(values)
         chosen.SetName(name)
@@ -145,7 +152,7 @@ def _plain_contour(image, array, component):
     return extractor
 
 
-def save_surface(surface, path, progress=None):
+def save_surface(surface: vtkPolyData, path: FilePath, *, progress: Progress | None = None) -> None:
     """Write a surface to a file, which appears under its name only when it is complete.
 
     Parameters
@@ -165,8 +172,8 @@ def save_surface(surface, path, progress=None):
     FileNotFoundError
         When the folder does not exist.
     RuntimeError
-        When writing fails, as of an empty surface in a format that cannot hold one; nothing is
-        left behind.
+        When writing fails, for example an empty surface in a format that cannot hold one; nothing
+        is left behind.
 
     Examples
     --------
@@ -188,21 +195,21 @@ def save_surface(surface, path, progress=None):
             raise RuntimeError(f"cannot write '{temporary.name}'")
 
 
-def _vtp_writer():
-    """In line, as Debian 12's ParaView cannot read appended data."""
+def _vtp_writer() -> vtkXMLPolyDataWriter:
+    """Make a writer that puts data in line: Debian 12's ParaView cannot read appended data."""
     writer = vtkXMLPolyDataWriter()
     writer.SetDataModeToBinary()
     writer.SetHeaderTypeToUInt64()
     return writer
 
 
-def _stl_writer():
+def _stl_writer() -> vtkSTLWriter:
     writer = vtkSTLWriter()
     writer.SetFileTypeToBinary()
     return writer
 
 
-_WRITERS = {
+_WRITERS: dict[str, Callable[[], Any]] = {
     ".vtp": _vtp_writer,
     ".stl": _stl_writer,
     ".ply": vtkPLYWriter,

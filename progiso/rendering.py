@@ -1,11 +1,14 @@
-"""Rendering one image off screen with plain VTK: what the command line and the tests use."""
+"""One image, rendered off screen with plain VTK: what the command line uses."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonColor import vtkNamedColors
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
@@ -14,14 +17,23 @@ from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
 from ._opengl import check_display
+from ._typing import RGB, FilePath, ImageLike, Isovalues
 from ._vtk import vtk_errors
 from .appearance import as_list, is_color
-from .camera import orbit_camera, view_camera
+from .camera import Camera, orbit_camera, view_camera
 from .compression import as_compressed
 from .geometry import as_image
 from .io.files import atomic_path
-from .isosurface import make_isosurface
+from .isosurface import style_isosurface
+from .options import CompressionKeywords, CompressionOptions, RenderOptions, SurfaceStyle
 from .statistics import depth, statistics
+from .vtkProgIsoKernels import vtkIsosurfaceVolume
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+#: A colour's name, ``#rrggbb``, or red, green and blue from 0 to 1.
+_Color = str | Sequence[float]
 
 _HEX = re.compile("#[0-9a-fA-F]{6}")
 
@@ -43,29 +55,26 @@ class RenderResult:
         See `progiso.statistics`, with ``camera`` and ``size``.
     """
 
-    image: np.ndarray
-    depth: np.ndarray
-    statistics: dict
+    image: npt.NDArray[np.uint8]
+    depth: npt.NDArray[np.float32]
+    statistics: dict[str, Any]
 
 
 def render(
-    image,
-    isovalue,
-    size=(1280, 720),
-    orbit=None,
-    camera=None,
-    rate=8.0,
-    array=None,
-    component=0,
-    speculation=True,
-    color="oldlace",
-    background="#20242b",
-    progress=None,
-    memory_budget=0,
-    detailed=False,
-    opacity=1.0,
-    mask_nan=False,
-):
+    image: ImageLike,
+    isovalue: Isovalues,
+    *,
+    size: tuple[int, int] = (1280, 720),
+    orbit: tuple[int, int] | None = None,
+    camera: Camera | None = None,
+    color: _Color | Sequence[_Color] = "oldlace",
+    opacity: float | Sequence[float] = 1.0,
+    background: _Color = "#20242b",
+    speculation: bool | int = True,
+    memory_budget: int = 0,
+    detailed: bool = False,
+    **compression: Unpack[CompressionKeywords],
+) -> RenderResult:
     """Render isosurfaces off screen until the image is complete.
 
     Parameters
@@ -80,27 +89,14 @@ def render(
         Camera ``(i, n)`` of `orbit_camera`; not together with `camera`.
     camera : Camera, optional
         By default `view_camera` of the image.
-    rate : float, default: 8
-        Bits per sample for a plain image, which is compressed first.
-    array, component : str, int
-        What to compress of a plain image, see `compress`.
-    speculation : bool or int, default: True
-        Whether rays test several blocks ahead in one pass, or how many at most (1 to 64).
     color, background : str or sequence of 3 float
         A colour's name, ``#rrggbb``, or red, green and blue from 0 to 1. A sequence of colours
         has one for each isovalue.
-    progress : callable, optional
-        Called with the fraction done, from 0 to 1, while a plain image is compressed.
-    memory_budget : int, default: 0
-        Bound in bytes on the GPU memory beside the compressed volume; 0 for the mapper's own
-        choice.
-    detailed : bool, default: False
-        Whether the statistics tell the time of each stage and the distinct blocks of each pass,
-        which costs time itself.
-    opacity : float or sequence of float, default: 1
-        One for all isovalues, or one for each; below 1 what lies behind shines through.
-    mask_nan : bool, default: False
-        Whether NaN and infinite samples of a plain image are hidden, as in `compress`.
+    opacity, speculation, memory_budget, detailed
+        As in `make_isosurface`.
+    **compression
+        A plain image is compressed first: ``rate``, ``array``, ``component``, ``mask_nan``,
+        ``threads`` and ``progress`` as in `compress`.
 
     Returns
     -------
@@ -128,23 +124,22 @@ def render(
     image = as_image(image)
     if orbit is not None:
         camera = orbit_camera(image, *orbit)
-    image = as_compressed(image, rate, array, component, progress, mask_nan)
-    volume = make_isosurface(
+    image = as_compressed(image, CompressionOptions(**compression))
+    colors = [parse_color(each) for each in as_list(color, is_color)]
+    prop = style_isosurface(
         image,
         isovalue,
-        color=[parse_color(each) for each in as_list(color, is_color)],
-        speculation=speculation,
-        memory_budget=memory_budget,
-        opacity=opacity,
+        SurfaceStyle(color=colors, opacity=opacity),
+        RenderOptions(speculation=speculation, memory_budget=memory_budget, detailed=detailed),
     )
-    volume.GetMapper().SetDetailedStatistics(bool(detailed))
-    window, renderer = _scene(volume, width, height, parse_color(background))
+    window, renderer = _scene(prop, width, height)
+    renderer.SetBackground(parse_color(background))
     (camera or view_camera(image, aspect=width / height)).apply(renderer.GetActiveCamera())
     renderer.ResetCameraClippingRange()
     with vtk_errors("cannot render"):
         window.Render()
     _check_opengl(window)
-    mapper = volume.GetMapper()
+    mapper = prop.GetMapper()
     result = RenderResult(
         window_pixels(window, width, height), depth(mapper), statistics(mapper, renderer)
     )
@@ -152,15 +147,15 @@ def render(
     return result
 
 
-def _checked_size(size):
+def _checked_size(size: tuple[int, int]) -> tuple[int, int]:
     width, height = (int(n) for n in size)
     if not (1 <= width <= MAX_SIZE and 1 <= height <= MAX_SIZE):
         raise ValueError(f"size {width}x{height}: width and height must be 1 to {MAX_SIZE} pixels")
     return width, height
 
 
-def parse_color(color):
-    """Red, green and blue from a name, ``#rrggbb`` or three numbers from 0 to 1.
+def parse_color(color: _Color) -> RGB:
+    """Make red, green and blue of a name, ``#rrggbb`` or three numbers from 0 to 1.
 
     Raises
     ------
@@ -175,20 +170,22 @@ def parse_color(color):
     if isinstance(color, str):
         known = bool(_HEX.fullmatch(color)) or vtkNamedColors().ColorExists(color)
         rgba = vtkNamedColors().HTMLColorToRGBA(color) if known else (0, 0, 0)
-        rgb = tuple(rgba[i] / 255 for i in range(3))
+        rgb = [rgba[i] / 255 for i in range(3)]
     else:
-        rgb = tuple(float(c) for c in color)
+        rgb = [float(c) for c in color]
         known = len(rgb) == 3 and all(0 <= c <= 1 for c in rgb)
     if not known:
         raise ValueError(f"unknown colour {color!r}: give a name, #rrggbb or 3 numbers from 0 to 1")
-    return rgb
+    red, green, blue = rgb
+    return red, green, blue
 
 
-def _scene(volume, width, height, background):
-    """An off-screen window with one volume in it."""
+def _scene(
+    prop: vtkIsosurfaceVolume, width: int, height: int
+) -> tuple[vtkRenderWindow, vtkRenderer]:
+    """Make an off-screen window that shows one prop."""
     renderer, window = vtkRenderer(), vtkRenderWindow()
-    renderer.SetBackground(background)
-    renderer.AddVolume(volume)
+    renderer.AddVolume(prop)
     window.SetOffScreenRendering(True)
     window.SetMultiSamples(0)
     window.SetSize(width, height)
@@ -196,8 +193,8 @@ def _scene(volume, width, height, background):
     return window, renderer
 
 
-def _check_opengl(window):
-    """VTK goes on without a context; say so instead of returning a black picture."""
+def _check_opengl(window: vtkRenderWindow) -> None:
+    """Raise where there is no context: VTK would go on and return a black picture."""
     if not window.SupportsOpenGL():
         raise RuntimeError(
             f"no usable OpenGL context ({window.GetClassName()}); install libosmesa6 or a GPU "
@@ -205,8 +202,8 @@ def _check_opengl(window):
         )
 
 
-def window_pixels(window, width, height):
-    """Colours of a window that has been rendered.
+def window_pixels(window: vtkRenderWindow, width: int, height: int) -> npt.NDArray[np.uint8]:
+    """Read the colours of a window that has been rendered.
 
     Returns
     -------
@@ -218,7 +215,7 @@ def window_pixels(window, width, height):
     return np.ascontiguousarray(vtk_to_numpy(pixels).reshape(height, width, 3)[::-1])
 
 
-def write_png(pixels, path):
+def write_png(pixels: npt.NDArray[np.uint8], path: FilePath) -> None:
     """Write an image as PNG.
 
     Parameters
@@ -226,7 +223,7 @@ def write_png(pixels, path):
     pixels : numpy.ndarray of uint8, shape (height, width, 3)
         Row 0 is the top.
     path : str or os.PathLike
-        Replaced at once when the file is complete.
+        Appears under its name only when it is complete.
     """
     image = vtkImageData()
     image.SetDimensions(pixels.shape[1], pixels.shape[0], 1)

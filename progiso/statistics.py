@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from ._vtk import vtk_errors
 from .camera import Camera
+from .vtkProgIsoKernels import vtkProgressiveIsosurfaceMapper, vtkProgressiveIsosurfaceStatistics
 
-#: What is known of every pass, in this order.
+#: Names of the figures of a pass, in this order.
 PASS_KEYS = (
     "pass",
     "active_rays",
@@ -27,7 +31,9 @@ PASS_KEYS = (
 _FRACTIONAL = ("completed", "elapsed_ms")
 
 
-def statistics(mapper, renderer=None):
+def statistics(
+    mapper: vtkProgressiveIsosurfaceMapper, renderer: vtkRenderer | None = None
+) -> dict[str, Any]:
     """Collect a mapper's statistics of its last image, ready for JSON.
 
     Parameters
@@ -41,19 +47,19 @@ def statistics(mapper, renderer=None):
     -------
     dict
         ``passes``
-            One dict a pass, with the keys of `PASS_KEYS`: counts, ``completed`` from 0 to 1 and
-            ``elapsed_ms``. ``visible_blocks`` and ``active_blocks`` are None unless the mapper's
+            One dict for each pass, with the keys of `PASS_KEYS`: counts, ``completed`` from 0 to 1
+            and ``elapsed_ms``. ``visible_blocks`` and ``active_blocks`` are None unless the mapper's
             ``DetailedStatistics`` are on.
         ``total_ms``
             Milliseconds over all passes.
         ``memory``
-            GPU memory in bytes: ``buffers`` {name: bytes}, their ``total``, ``compressed``, the
-            part of it that is the compressed stream, ``budget``, the bound on the rest, and
-            ``least_budget``, the least that would do.
+            GPU memory in bytes: ``buffers`` {name: bytes}, their ``total``, the part of it that is
+            the ``compressed`` stream, the ``budget`` for the rest, and the ``least_budget`` that
+            would be enough.
         ``stages``, ``left_out``
             Names of the stages that ran, and of those that the scene did not need.
         ``stage_ms``
-            Milliseconds by stage, all passes together; empty unless the mapper's
+            Milliseconds of each stage over all passes; empty unless the mapper's
             ``DetailedStatistics`` are on.
         ``converged``
             Whether the image is complete.
@@ -94,23 +100,23 @@ def statistics(mapper, renderer=None):
     return values
 
 
-def _pass_values(source, i):
+def _pass_values(source: vtkProgressiveIsosurfaceStatistics, i: int) -> dict[str, Any]:
     values = {key: source.GetPassValue(i, key) for key in PASS_KEYS}
     return {key: v if key in _FRACTIONAL else _count(v) for key, v in values.items()}
 
 
-def _count(value):
-    """A whole number, or None where it was not counted."""
+def _count(value: float) -> int | None:
+    """Return a whole number, or None where it was not counted."""
     return None if math.isnan(value) else int(value)
 
 
-def _stage_milliseconds(source):
+def _stage_milliseconds(source: vtkProgressiveIsosurfaceStatistics) -> dict[str, float]:
     stages = range(source.GetNumberOfStages())
     return {source.GetStage(i): source.GetStageMilliseconds(i) for i in stages}
 
 
-def depth(mapper):
-    """Distances from the camera to the surface in a mapper's last image.
+def depth(mapper: vtkProgressiveIsosurfaceMapper) -> npt.NDArray[np.float32]:
+    """Return the distances from the camera to the surface in a mapper's last image.
 
     Parameters
     ----------

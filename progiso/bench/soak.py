@@ -242,7 +242,7 @@ class _Walk:
         position = self._rest.focal_point + distance * direction / np.linalg.norm(direction)
         up = tuple(np.roll(np.cross(direction, (0.3, 0.5, 0.8)), 1).tolist())
         angle = self._random.uniform(10, 90)
-        return Camera(tuple(position.tolist()), self._rest.focal_point, up, float(angle))
+        return Camera(tuple(position.tolist()), self._rest.focal_point, up, view_angle=float(angle))
 
     # ---- changes
 

@@ -1,13 +1,16 @@
-"""A progress bar on standard error, for people only."""
+"""A progress bar on standard error, where that is a terminal."""
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from contextlib import contextmanager
+
+from .._typing import Progress
 
 
 @contextmanager
-def progress_bar(description):
+def progress_bar(description: str) -> Iterator[Progress | None]:
     """Show a bar while the block runs.
 
     Parameters

@@ -12,10 +12,11 @@ Volumes that exceed memory or disk come compressed, see `compressed`.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from .._typing import Progress
 from .catalogue import SCANS, fetch_scan
 from .generators import GENERATORS, generate, generate_compressed
 
@@ -47,7 +48,7 @@ def cache_folder() -> Path:
 def fetch(
     name: str,
     folder: str | os.PathLike[str] | None = None,
-    progress: Callable[[float], None] | None = None,
+    progress: Progress | None = None,
     **options: Any,
 ) -> Path:
     """Get a volume by name, fetched or generated when it is not in the cache yet.
@@ -97,7 +98,7 @@ def compressed(
     size: int | Sequence[int] = 128,
     rate: float = 8.0,
     folder: str | os.PathLike[str] | None = None,
-    progress: Callable[[float], None] | None = None,
+    progress: Progress | None = None,
     **options: Any,
 ) -> Path:
     """Get a generated volume as a compressed file, for sizes that exceed memory or disk.

@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from .._typing import Progress
 from ..io import save
 from ..io.files import atomic_path, check_output
 from ..io.raw import raw_name
@@ -84,7 +85,7 @@ def generate(
     generator: Generator,
     folder: str | os.PathLike[str],
     size: int | Sequence[int] = 128,
-    progress: Callable[[float], None] | None = None,
+    progress: Progress | None = None,
     **options: float,
 ) -> Path:
     """Sample a field into a raw float32 file, unless it is there already.
@@ -129,7 +130,7 @@ def generate_compressed(
     folder: str | os.PathLike[str],
     size: int | Sequence[int] = 128,
     rate: float = 8.0,
-    progress: Callable[[float], None] | None = None,
+    progress: Progress | None = None,
     **options: float,
 ) -> Path:
     """Sample a field into a compressed ``.zfp`` file, unless it is there already.

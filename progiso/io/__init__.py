@@ -1,4 +1,4 @@
-"""Volumes in files: `read` and `save` by suffix, `compress_file` and `compress_slabs` some slices at a time."""
+"""Volumes in files, one module a format; `volumes` has the table of formats."""
 
 from .slabs import compress_slabs
 from .volumes import compress_file, read, save

@@ -1,21 +1,24 @@
-"""Writing files so that a reader never sees half of one."""
+"""Files that appear under their names only when they are complete."""
 
 from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from .._typing import FilePath
 
-def check_output(path, suffixes=None):
-    """Find out before long work whether its result can be written.
+
+def check_output(path: FilePath, suffixes: Iterable[str] | None = None) -> None:
+    """Check, before long work, that its result can be written.
 
     Parameters
     ----------
     path : str or os.PathLike
         The file to create or replace.
-    suffixes : sequence of str, optional
+    suffixes : iterable of str, optional
         What its name may end in.
 
     Raises
@@ -37,8 +40,8 @@ def check_output(path, suffixes=None):
 
 
 @contextmanager
-def atomic_path(path):
-    """Give a temporary path to write to, renamed to `path` when the block succeeds.
+def atomic_path(path: FilePath) -> Iterator[Path]:
+    """Yield a temporary path to write to, renamed to `path` when the block succeeds.
 
     Parameters
     ----------

@@ -1,16 +1,22 @@
-"""MetaImage (``.mha``, ``.mhd``): VTK reads the samples but passes over the orientation."""
+"""MetaImage (``.mha``, ``.mhd``): VTK reads the samples but ignores the orientation."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 from vtkmodules.util.numpy_support import get_vtk_to_numpy_typemap, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkMetaImageReader
 
+from .._typing import FilePath
 from .._vtk import dimensions_of, place_as_read, vtk_errors
 from ..geometry import axes_of, set_axes
 from .slab_files import Inflated, SlabFile, opened_at
+
+#: The text header.
+_Fields = dict[str, str]
 
 _ELEMENT_TYPES = {
     "int8": "MET_CHAR",
@@ -26,7 +32,7 @@ _ELEMENT_TYPES = {
 }
 
 
-def read_metaimage(path):
+def read_metaimage(path: FilePath) -> vtkImageData:
     """Read a MetaImage with its ``TransformMatrix`` as the direction matrix.
 
     Parameters
@@ -43,12 +49,12 @@ def read_metaimage(path):
     with vtk_errors(f"cannot read '{path}'"):
         reader.Update()
     image = reader.GetOutput()
-    _turn(image, _header(path)[0])
+    _set_direction(image, _header(path)[0])
     return image
 
 
-def _turn(image, fields):
-    """Set the direction that VTK passes over."""
+def _set_direction(image: vtkImageData, fields: _Fields) -> None:
+    """Set the direction that VTK ignores."""
     transform = fields.get("TransformMatrix")
     if transform and len(transform.split()) == 9:
         # The file lists one axis after the other: its rows are the direction's columns.
@@ -56,7 +62,7 @@ def _turn(image, fields):
         set_axes(image, direction * np.asarray(image.GetSpacing()), image.GetOrigin())
 
 
-def metaimage_slabs(path):
+def metaimage_slabs(path: FilePath) -> SlabFile | None:
     """Open a MetaImage to be read some slices at a time; errors as in `read_metaimage`.
 
     Returns
@@ -85,19 +91,27 @@ def metaimage_slabs(path):
         offset = -int(np.prod(dimensions, dtype=object)) * components * dtype.itemsize
     wrap = Inflated if _flag(fields, "CompressedData") else None
 
-    def place(image):
+    def place(image: vtkImageData) -> None:
         place_as_read(image, reader)
-        _turn(image, fields)
+        _set_direction(image, fields)
 
-    opener = opened_at(path if local else path.parent / data, offset, wrap)
-    return SlabFile(path, "MetaImage", dimensions, dtype, opener, place, components, kind)
+    return SlabFile(
+        path,
+        "MetaImage",
+        dimensions,
+        dtype,
+        open=opened_at(path if local else path.parent / data, offset, wrap=wrap),
+        place=place,
+        components=components,
+        vtk_type=kind,
+    )
 
 
-def _flag(fields, key):
+def _flag(fields: _Fields, key: str) -> bool:
     return fields.get(key, "False").lower() in ("true", "1")
 
 
-def _reader(path):
+def _reader(path: FilePath) -> vtkMetaImageReader:
     reader = vtkMetaImageReader()
     if not reader.CanReadFile(str(path)):
         raise ValueError(f"'{path}' is not a MetaImage")
@@ -105,9 +119,9 @@ def _reader(path):
     return reader
 
 
-def _header(path):
-    """Fields of a MetaImage's text header, and its length; ElementDataFile is always its last."""
-    fields = {}
+def _header(path: FilePath) -> tuple[_Fields, int]:
+    """Read the text header, and its length; ElementDataFile is always its last field."""
+    fields: _Fields = {}
     with open(path, "rb") as file:
         for line in iter(lambda: file.readline(4096), b""):
             key, _, value = line.decode("latin-1").partition("=")
@@ -117,7 +131,7 @@ def _header(path):
         return fields, file.tell()
 
 
-def write_metaimage(image, path):
+def write_metaimage(image: vtkImageData, path: FilePath) -> None:
     """Write the active scalars as an uncompressed ``.mha`` with the full geometry.
 
     Parameters
@@ -150,5 +164,5 @@ def write_metaimage(image, path):
         values.astype(values.dtype.newbyteorder("<"), copy=False).tofile(file)
 
 
-def _numbers(values):
+def _numbers(values: npt.ArrayLike) -> str:
     return " ".join(repr(float(v)) for v in np.ravel(values))

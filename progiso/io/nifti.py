@@ -1,20 +1,23 @@
-"""NIfTI (``.nii``, ``.nii.gz``) through VTK, and whatever else nibabel reads."""
+"""NIfTI (``.nii``, ``.nii.gz``): VTK's reader, placed by the affine."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 from vtkmodules.util.numpy_support import get_vtk_to_numpy_typemap, numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkIOImage import vtkNIFTIImageReader, vtkNIFTIImageWriter
 
+from .._typing import Array, FilePath
 from .._vtk import dimensions_of, place_as_read, vtk_errors
-from ..geometry import axes_of, image_from_array, set_axes
+from ..geometry import axes_of, set_axes
 from .slab_files import SlabFile, gunzipped, opened_at
 
 
-def read_nifti(path):
+def read_nifti(path: FilePath) -> vtkImageData:
     """Read a NIfTI image with its affine as spacing, origin and direction.
 
     Parameters
@@ -42,14 +45,14 @@ def read_nifti(path):
     return image
 
 
-def nifti_slabs(path):
+def nifti_slabs(path: FilePath) -> SlabFile | None:
     """Open a NIfTI image to be read some slices at a time; errors as in `read_nifti`.
 
     Returns
     -------
     SlabFile or None
-        None when it has a vector's components one after the other, or is compressed and begins
-        with the last slice.
+        None when the components of vectors are stored one after the other, or the file is
+        compressed and begins with the last slice.
     """
     reader = _reader(path)
     with vtk_errors(f"cannot read '{path}'"):
@@ -60,12 +63,12 @@ def nifti_slabs(path):
     if reader.GetNIFTIHeader().GetDim(5) > 1 or (packed and from_top):
         return None
 
-    def place(image):
+    def place(image: vtkImageData) -> None:
         place_as_read(image, reader)
         _place(image, reader)
 
     header = reader.GetHeaderSize()
-    opener = opened_at(path, 0, gunzipped, header) if packed else opened_at(path, header)
+    opener = opened_at(path, wrap=gunzipped, skip=header) if packed else opened_at(path, header)
     kind = reader.GetDataScalarType()
     dtype = np.dtype(get_vtk_to_numpy_typemap()[kind])
     dtype = dtype.newbyteorder() if reader.GetSwapBytes() else dtype
@@ -74,16 +77,16 @@ def nifti_slabs(path):
         "NIFTI",
         dimensions_of(reader),
         dtype,
-        opener,
-        place,
-        reader.GetNumberOfScalarComponents(),
-        kind,
-        _rescaling(reader),
-        from_top,
+        open=opener,
+        place=place,
+        components=reader.GetNumberOfScalarComponents(),
+        vtk_type=kind,
+        convert=_rescaling(reader),
+        from_top=from_top,
     )
 
 
-def _reader(path):
+def _reader(path: FilePath) -> vtkNIFTIImageReader:
     reader = vtkNIFTIImageReader()
     if not reader.CanReadFile(str(path)):
         raise ValueError(f"'{path}' is not a NIfTI image")
@@ -91,7 +94,7 @@ def _reader(path):
     return reader
 
 
-def _place(image, reader):
+def _place(image: vtkImageData, reader: vtkNIFTIImageReader) -> None:
     """Set the axes and origin by the affine, which maps VTK's own coordinates, spacing included."""
     affine = reader.GetSFormMatrix() or reader.GetQFormMatrix()
     if affine is not None:
@@ -100,15 +103,15 @@ def _place(image, reader):
         set_axes(image, matrix[:3, :3] * np.asarray(image.GetSpacing()), origin)
 
 
-def _rescaling(reader):
-    """How to apply the slope and intercept, or None; a slope of 0 or NaN means none."""
+def _rescaling(reader: vtkNIFTIImageReader) -> Callable[[Array], Array] | None:
+    """Return what applies the slope and intercept, or None; a slope of 0 or NaN means none."""
     slope, intercept = reader.GetRescaleSlope(), reader.GetRescaleIntercept()
     if not np.isfinite(slope) or slope == 0 or (slope == 1 and intercept == 0):
         return None
     return lambda values: (values * slope + intercept).astype(np.float32)
 
 
-def write_nifti(image, path):
+def write_nifti(image: vtkImageData, path: FilePath) -> None:
     """Write the active scalars as NIfTI with the image's geometry as its sform.
 
     Parameters
@@ -123,7 +126,7 @@ def write_nifti(image, path):
     matrix[:3, :3] = axes / np.asarray(image.GetSpacing())
     matrix[:3, 3] = np.asarray(image.GetOrigin()) + axes @ np.asarray(extent[::2], float)
     sform = vtkMatrix4x4()
-    sform.DeepCopy(matrix.ravel())
+    sform.DeepCopy(matrix.ravel().tolist())
     plain = type(image)()  # the writer adds the origin to the matrix by itself
     plain.ShallowCopy(image)
     plain.SetExtent(0, extent[1] - extent[0], 0, extent[3] - extent[2], 0, extent[5] - extent[4])
@@ -134,32 +137,3 @@ def write_nifti(image, path):
     writer.SetFileName(str(path))
     with vtk_errors(f"cannot write '{path}'"):
         writer.Write()
-
-
-def read_nibabel(path):
-    """Read any other image format that nibabel knows (``.mgz``, ``.mnc``, ``.hdr``/``.img`` …).
-
-    Raises
-    ------
-    ImportError
-        When nibabel is not installed.
-    ValueError
-        When nibabel cannot read the file or it is not a volume.
-    """
-    try:
-        import nibabel
-    except ImportError:
-        raise ImportError(f"reading '{path}' needs nibabel: pip install nibabel") from None
-    try:
-        source = nibabel.load(path)
-        values = np.asarray(source.dataobj)
-    except (nibabel.filebasedimages.ImageFileError, nibabel.spatialimages.HeaderDataError) as error:
-        raise ValueError(f"cannot read '{path}': {error}") from None
-    while values.ndim > 3:  # of a series the first volume
-        values = values[..., 0]
-    if values.ndim != 3:
-        raise ValueError(f"'{path}' is not a volume: its shape is {values.shape}")
-    native = np.ascontiguousarray(values.T, values.dtype.newbyteorder("="))
-    image = image_from_array(native, values.shape, name="scalars")
-    set_axes(image, source.affine[:3, :3], source.affine[:3, 3])
-    return image

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData
 
+from .._typing import Array, Dimensions, FilePath
 from ..geometry import image_from_array
 from .slab_files import SlabFile, opened_at
 
@@ -18,7 +23,7 @@ _NAME = re.compile(
 )
 
 
-def raw_name(name, dimensions, dtype):
+def raw_name(name: str, dimensions: Sequence[int], dtype: npt.DTypeLike) -> str:
     """Compose a file name that says what the file holds.
 
     Examples
@@ -29,7 +34,7 @@ def raw_name(name, dimensions, dtype):
     return f"{name}_{'x'.join(str(n) for n in dimensions)}_{np.dtype(dtype).name}.raw"
 
 
-def parse_raw_name(path):
+def parse_raw_name(path: FilePath) -> tuple[str, Dimensions, np.dtype[Any]]:
     """Read name, dimensions and sample type out of a raw file's name.
 
     Parameters
@@ -40,7 +45,7 @@ def parse_raw_name(path):
     Returns
     -------
     name : str
-        What stands before the dimensions.
+        The part before the dimensions.
     dimensions : tuple of int
         Samples along x (fastest in the file), y and z.
     dtype : numpy.dtype
@@ -62,11 +67,11 @@ def parse_raw_name(path):
             f"cannot tell dimensions and type of '{Path(path).name}': a raw file must be named "
             f"name_WxHxD_type.raw, type one of {', '.join(TYPES)}"
         )
-    dimensions = tuple(int(match[axis]) for axis in "xyz")
+    dimensions = (int(match["x"]), int(match["y"]), int(match["z"]))
     return match["name"], dimensions, np.dtype(match["type"]).newbyteorder("<")
 
 
-def read_raw(path):
+def read_raw(path: FilePath) -> vtkImageData:
     """Open a raw volume as an image whose scalars are a memory map of the file.
 
     Pages are read when they are touched, so volumes larger than main memory open at once.
@@ -88,13 +93,13 @@ def read_raw(path):
         When the name does not follow the convention or the size does not fit it.
     """
     name, dimensions, dtype = _checked_name(path)
-    values = np.memmap(path, dtype=dtype, mode="r")
+    values: Array = np.memmap(path, dtype=dtype, mode="r")
     if not values.dtype.isnative:  # a big-endian machine has to swap, hence to copy
         values = values.astype(dtype.newbyteorder("="))
     return image_from_array(values, dimensions, name=name)
 
 
-def raw_slabs(path):
+def raw_slabs(path: FilePath) -> SlabFile:
     """Open a raw volume to be read some slices at a time; errors as in `read_raw`.
 
     Returns
@@ -102,11 +107,13 @@ def raw_slabs(path):
     SlabFile
     """
     name, dimensions, dtype = _checked_name(path)
-    return SlabFile(Path(path), name, dimensions, dtype, opened_at(path), lambda image: None)
+    return SlabFile(
+        Path(path), name, dimensions, dtype, open=opened_at(path), place=lambda image: None
+    )
 
 
-def _checked_name(path):
-    """What a raw file's name announces, if its size agrees."""
+def _checked_name(path: FilePath) -> tuple[str, Dimensions, np.dtype[Any]]:
+    """Parse a raw file's name, or raise where its size does not fit it."""
     name, dimensions, dtype = parse_raw_name(path)
     expected = int(np.prod(dimensions, dtype=object)) * dtype.itemsize
     actual = Path(path).stat().st_size
@@ -118,7 +125,7 @@ def _checked_name(path):
     return name, dimensions, dtype
 
 
-def write_raw(image, path):
+def write_raw(image: vtkImageData, path: FilePath) -> None:
     """Write an image's active scalars as a raw file; the name must announce what is in it.
 
     Raises

@@ -5,21 +5,29 @@ from __future__ import annotations
 import gzip
 import io
 import zlib
-from collections.abc import Callable
-from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from dataclasses import KW_ONLY, dataclass
 from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkDataArray
+from vtkmodules.vtkCommonDataModel import vtkImageData
 
-#: Bytes of samples that are read at a time, in whole blocks of slices.
+from .._typing import Array, Dimensions, FilePath
+
+if TYPE_CHECKING:
+    from _typeshed import WriteableBuffer
+
+#: Bytes of samples that are read at a time, in whole layers of blocks.
 _SLAB_BYTES = 2**25
 
 
 @dataclass(frozen=True)
 class SlabFile:
-    """A volume in a file, of which nothing but the header has been read.
+    """A volume in a file of which only the header has been read.
 
     Attributes
     ----------
@@ -47,16 +55,17 @@ class SlabFile:
 
     path: Path
     name: str
-    dimensions: tuple
-    dtype: np.dtype
-    open: Callable
-    place: Callable
+    dimensions: Dimensions
+    dtype: np.dtype[Any]
+    _: KW_ONLY
+    open: Callable[[], AbstractContextManager[Any]]
+    place: Callable[[vtkImageData], None]
     components: int = 1
     vtk_type: int | None = None
-    convert: Callable | None = None
+    convert: Callable[[Array], Array] | None = None
     from_top: bool = False
 
-    def slabs(self):
+    def slabs(self) -> Iterator[Array]:
         """Read the volume some slices at a time.
 
         Yields
@@ -74,7 +83,7 @@ class SlabFile:
         shape = (height, width) + ((self.components,) if self.components > 1 else ())
         slice_bytes = int(np.prod(shape)) * self.dtype.itemsize
         step = min(slices, max(4, _SLAB_BYTES // slice_bytes // 4 * 4))
-        memory = np.empty((step, *shape), self.dtype)
+        memory: Array = np.empty((step, *shape), self.dtype)
         with self.open() as file:
             start = file.tell() if self.from_top else 0
             for first in range(0, slices, step):
@@ -84,9 +93,9 @@ class SlabFile:
                 self._fill(file, slab, first)
                 yield self._native(slab[::-1] if self.from_top else slab)
 
-    def _fill(self, file, slab, first):
+    def _fill(self, file: Any, slab: Array, first: int) -> None:
         """Read bytes until a slab is full."""
-        view, done = memoryview(slab.reshape(-1).view(np.uint8)), 0
+        view, done = slab.reshape(-1).view(np.uint8).data, 0
         while done < len(view):
             try:
                 count = file.readinto(view[done:])
@@ -99,12 +108,12 @@ class SlabFile:
                 )
             done += count
 
-    def _native(self, slab):
+    def _native(self, slab: Array) -> Array:
         slab = slab.astype(slab.dtype.newbyteorder("="), copy=False)
         return slab if self.convert is None else self.convert(slab)
 
-    def vtk_arrays(self):
-        """Yield the slabs as VTK's arrays; their memory is used again too."""
+    def vtk_arrays(self) -> Iterator[vtkDataArray]:
+        """Yield the slabs as VTK arrays; their memory, too, is the same every time."""
         kind = self.vtk_type if self.convert is None else None
         for slab in self.slabs():
             flat = np.ascontiguousarray(slab).reshape(-1, self.components)
@@ -112,7 +121,7 @@ class SlabFile:
 
 
 class Inflated(io.RawIOBase):
-    """The bytes that a file holds, compressed by zlib, from where it is on.
+    """What a file holds from its current position on, decompressed by zlib.
 
     Examples
     --------
@@ -120,24 +129,31 @@ class Inflated(io.RawIOBase):
     b'samples'
     """
 
-    def __init__(self, file):
+    def __init__(self, file: IO[bytes]) -> None:
         self._file, self._inflater = file, zlib.decompressobj()
 
-    def readable(self):
+    def readable(self) -> bool:
         return True
 
-    def readinto(self, buffer):
+    def readinto(self, buffer: WriteableBuffer) -> int:
+        view = memoryview(buffer).cast("B")
         inflater, data = self._inflater, b""
         while not data and not inflater.eof:
             packed = inflater.unconsumed_tail or self._file.read(2**16)
             if not packed:
                 break
-            data = inflater.decompress(packed, len(buffer))
-        buffer[: len(data)] = data
+            data = inflater.decompress(packed, len(view))
+        view[: len(data)] = data
         return len(data)
 
 
-def opened_at(path, offset=0, wrap=None, skip=0):
+def opened_at(
+    path: FilePath,
+    offset: int = 0,
+    *,
+    wrap: Callable[[Any], AbstractContextManager[Any]] | None = None,
+    skip: int = 0,
+) -> Callable[[], AbstractContextManager[Any]]:
     """Make a function that opens a file at its samples, for a ``with`` statement.
 
     Parameters
@@ -149,7 +165,7 @@ def opened_at(path, offset=0, wrap=None, skip=0):
     wrap : callable, optional
         What decodes the file from there.
     skip : int, default: 0
-        Bytes to skip of what is decoded.
+        Bytes to skip after decoding.
 
     Returns
     -------
@@ -166,7 +182,7 @@ def opened_at(path, offset=0, wrap=None, skip=0):
     """
 
     @contextmanager
-    def open_it():
+    def open_it() -> Iterator[Any]:
         with open(path, "rb") as file:
             file.seek(offset, 2 if offset < 0 else 0)
             with nullcontext(file) if wrap is None else wrap(file) as unwrapped:
@@ -177,6 +193,6 @@ def opened_at(path, offset=0, wrap=None, skip=0):
     return open_it
 
 
-def gunzipped(file):
-    """The bytes that a file holds, compressed by gzip, from where it is on."""
+def gunzipped(file: IO[bytes]) -> gzip.GzipFile:
+    """Open what a file holds from its current position on, decompressed by gzip."""
     return gzip.GzipFile(fileobj=file)

@@ -1,1 +1,1 @@
-"""progiso in pyvista: ``image.progiso`` and ``plotter.progiso``, see `plugin`."""
+"""progiso in pyvista: ``image.progiso`` (`accessor`) and ``plotter.progiso`` (`plugin`)."""

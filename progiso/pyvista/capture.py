@@ -1,21 +1,27 @@
-"""Complete pictures of windows in which isosurfaces show pass by pass."""
+"""Complete pictures of windows in which images refine pass by pass."""
 
 from __future__ import annotations
 
 import functools
 import weakref
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
+from typing import Any
+
+import pyvista
+
+from ..vtkProgIsoKernels import vtkIsosurfaceVolume
 
 #: A plotter's methods that take a picture of what the window holds.
 _CAPTURES = ("screenshot", "write_frame", "get_image_depth")
 
 
-def complete_captures(plotter):
-    """Let a plotter's pictures wait until the image is complete.
+def complete_captures(plotter: pyvista.BasePlotter) -> None:
+    """Make a plotter's pictures wait until the image is complete.
 
-    pyvista reads a window without rendering it again, and has no hook before that: the plotter's
-    own methods are wrapped. trame renders a window once for each picture that a browser gets, and
-    keeps its interactor from rendering: such renders are complete too.
+    pyvista reads a window without rendering it again, and has no hook before that: so the
+    plotter's own methods are wrapped. trame renders a window once for each picture that a browser
+    gets, and keeps its interactor from rendering: such renders are made complete, too.
 
     Parameters
     ----------
@@ -26,31 +32,36 @@ def complete_captures(plotter):
         return
     for name in _CAPTURES:
         setattr(plotter, name, _completing(plotter, name))
-    if plotter.render_window is not None:
-        _complete_where_nobody_refines(plotter)
+    _complete_where_nobody_refines(plotter)
 
 
-def _complete_where_nobody_refines(plotter):
-    """Complete every image whose window's interactor is forbidden to render the next."""
-    owner, renders = weakref.ref(plotter), ExitStack()  # the window holds the functions
+def _complete_where_nobody_refines(plotter: pyvista.BasePlotter) -> None:
+    """Complete every image whose window's interactor may not render the next one."""
+    window = plotter.render_window
+    if window is None:
+        return
+    owner, renders = weakref.ref(plotter), ExitStack()  # the window keeps the functions
 
-    def start(window, _event):
+    def start(window: Any, _event: object) -> None:
         interactor = window.GetInteractor()
-        if interactor is not None and not interactor.GetEnableRender():
-            renders.enter_context(_complete_renders(owner()))
+        plotter = owner()
+        if plotter is None or interactor is None or interactor.GetEnableRender():
+            return
+        renders.enter_context(_complete_renders(plotter))
 
-    plotter.render_window.AddObserver("StartEvent", start)
-    plotter.render_window.AddObserver("EndEvent", lambda *_: renders.close())
+    window.AddObserver("StartEvent", start)
+    window.AddObserver("EndEvent", lambda *_: renders.close())
 
 
-def _completing(plotter, name):
-    """A method of a plotter that completes the image first, and every render on the way."""
+def _completing(plotter: pyvista.BasePlotter, name: str) -> Callable[..., Any]:
+    """Wrap a method of a plotter so that it completes the image first, and every render in it."""
     method = getattr(type(plotter), name)
-    owner = weakref.ref(plotter)  # which holds the function
+    owner = weakref.ref(plotter)  # the plotter keeps the function
 
     @functools.wraps(method)
-    def capture(*args, **kwargs):
+    def capture(*args: Any, **kwargs: Any) -> Any:
         plotter = owner()
+        assert plotter is not None  # whose method this is
         with _complete_renders(plotter):
             complete(plotter)
             return method(plotter, *args, **kwargs)
@@ -58,8 +69,8 @@ def _completing(plotter, name):
     return capture
 
 
-def complete(plotter):
-    """Finish the image that shows; nothing is rendered where it is complete or not shown yet."""
+def complete(plotter: pyvista.BasePlotter) -> None:
+    """Finish the image that shows, unless it is complete or not shown yet."""
     window = plotter.render_window
     if window is None or window.GetNeverRendered():
         return
@@ -70,8 +81,8 @@ def complete(plotter):
 
 
 @contextmanager
-def _complete_renders(plotter):
-    """Let no render inside the block end before the image is complete."""
+def _complete_renders(plotter: pyvista.BasePlotter) -> Iterator[None]:
+    """Make every render inside the block end with a complete image."""
     mappers = [prop.GetMapper() for prop in _props(plotter)]
     allowances = [mapper.GetTimeAllowance() for mapper in mappers]
     for mapper in mappers:
@@ -83,8 +94,8 @@ def _complete_renders(plotter):
             mapper.SetTimeAllowance(allowance)
 
 
-def _props(plotter):
-    """The isosurfaces in all of a plotter's views."""
+def _props(plotter: pyvista.BasePlotter) -> list[vtkIsosurfaceVolume]:
+    """List the isosurfaces in all of a plotter's views."""
     return [
         prop
         for renderer in plotter.renderers

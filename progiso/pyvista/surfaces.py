@@ -3,19 +3,34 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Sequence
 from numbers import Real
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 import pyvista
-from vtkmodules.vtkCommonDataModel import vtkPlane, vtkPlaneCollection
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPlane, vtkPlaneCollection
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction
 
+from .._typing import RGB, ImageLike, Isovalues, Vector
 from ..appearance import as_list, is_color
 from ..compression import as_compressed, describe
-from ..isosurface import make_isosurface
+from ..isosurface import style_isosurface
+from ..options import (
+    CompressionOptions,
+    PlotterKeywords,
+    RenderOptions,
+    SurfaceStyle,
+    take,
+)
+from ..vtkProgIsoKernels import vtkIsosurfaceVolume
 from .capture import complete_captures
 
-#: What a slider takes of what `add_isosurface_slider` is given.
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+#: Keywords of `add_isosurface_slider` for the slider, and their names in pyvista.
 _SLIDER_ARGUMENTS = {
     "title": "title",
     "pointa": "pointa",
@@ -27,35 +42,46 @@ _SLIDER_ARGUMENTS = {
 }
 
 
+class ActorKeywords(PlotterKeywords, total=False):
+    """Keywords of `add_isosurface`, for the methods that pass them on."""
+
+    scalars: str | None
+    color: Any
+    cmap: Any
+    clim: float | tuple[float, float] | None
+    log_scale: bool
+    opacity: float | Sequence[float]
+    show_scalar_bar: bool | None
+    scalar_bar_args: dict[str, Any] | None
+    lighting: bool | None
+    name: str | None
+    reset_camera: bool | None
+    pickable: bool
+    render: bool
+    user_matrix: Any
+
+
 def add_isosurface(
-    plotter,
-    volume,
-    isovalue,
+    plotter: pyvista.BasePlotter,
+    volume: ImageLike,
+    isovalue: Isovalues,
     *,
-    scalars=None,
-    component=0,
-    color=None,
-    cmap=None,
-    clim=None,
-    log_scale=False,
-    opacity=1.0,
-    show_scalar_bar=None,
-    scalar_bar_args=None,
-    rate=8.0,
-    speculation=True,
-    memory_budget=0,
-    lighting=None,
-    ambient=0.05,
-    diffuse=0.8,
-    specular=0.15,
-    specular_power=20.0,
-    name=None,
-    reset_camera=None,
-    pickable=True,
-    render=True,
-    user_matrix=None,
-    mask_nan=False,
-):
+    scalars: str | None = None,
+    color: Any = None,
+    cmap: Any = None,
+    clim: float | tuple[float, float] | None = None,
+    log_scale: bool = False,
+    opacity: float | Sequence[float] = 1.0,
+    show_scalar_bar: bool | None = None,
+    scalar_bar_args: dict[str, Any] | None = None,
+    lighting: bool | None = None,
+    name: str | None = None,
+    reset_camera: bool | None = None,
+    pickable: bool = True,
+    render: bool = True,
+    user_matrix: Any = None,
+    **options: Unpack[PlotterKeywords],
+) -> vtkIsosurfaceVolume:
     """Add isosurfaces of a volume to a plotter, without extracting a mesh.
 
     They are rendered from compressed data, progressively while the view is interactive and
@@ -73,8 +99,6 @@ def add_isosurface(
         count: for that give ``numpy.linspace(low, high, count)``.
     scalars : str, optional
         Point or cell array of a plain image; by default the active scalars.
-    component : int, default: 0
-        Component of that array.
     color : ColorLike or sequence of ColorLike, optional
         Anything pyvista takes for a colour, or one such for each isovalue, which it keeps when it
         is changed. By default the theme's for one isovalue; several are coloured by `cmap`.
@@ -92,33 +116,24 @@ def add_isosurface(
         Whether `cmap` is shown as a scalar bar; by default the theme's choice.
     scalar_bar_args : dict, optional
         For :meth:`pyvista.Plotter.add_scalar_bar`; ``title`` is by default the array's name.
-    rate : float, default: 8
-        Bits per sample that plain data are compressed to, in (0, 32].
-    speculation : bool or int, default: True
-        Whether rays test several blocks ahead in one pass, or how many at most (1 to 64).
-    memory_budget : int, default: 0
-        Bound in bytes on the GPU memory beside the compressed volume; 0 for the mapper's own
-        choice.
     lighting : bool, optional
-        Whether light falls on the surface; by default the theme's choice.
-    ambient, diffuse, specular : float
-        Material, from 0 to 1.
-    specular_power : float, default: 20
-        From 0 to 128.
+        Whether lights shade the surface; by default the theme's choice.
     name : str, optional
         An actor of this name is replaced.
     reset_camera : bool, optional
         Whether the camera is reset to see everything; by default when it was not set yet.
     pickable : bool, default: True
-        Whether pyvista's hardware picker finds the prop. ``plotter.progiso.surface_at`` tells the
-        place.
+        Whether pyvista's hardware picker finds the prop. ``plotter.progiso.surface_at`` finds
+        points on it.
     render : bool, default: True
         Whether to render at once if the plotter is showing.
     user_matrix : TransformLike, optional
         Transformation of the prop, applied last.
-    mask_nan : bool, default: False
-        Whether NaN and infinite samples of plain data are hidden, so that the surface has a hole
-        there; else they are an error.
+    **options
+        ``ambient``, ``diffuse``, ``specular``, ``specular_power``, ``speculation``,
+        ``memory_budget`` and ``detailed`` as in :func:`progiso.make_isosurface`; for plain data
+        ``rate``, ``component``, ``mask_nan``, ``threads`` and ``progress`` as in
+        :func:`progiso.compress`.
 
     Returns
     -------
@@ -129,10 +144,10 @@ def add_isosurface(
     Raises
     ------
     TypeError
-        When `volume` is neither an image nor an array.
+        When `volume` is neither an image nor an array, or there is no such option.
     ValueError
-        When a number is out of its range, there is no such array, or there are neither one nor as
-        many colours or opacities as isovalues.
+        When a number is out of its range, there is no such array, or the number of colours or
+        opacities is neither one nor that of the isovalues.
     RuntimeError
         When the data cannot be compressed, for example because of NaN values.
 
@@ -150,26 +165,24 @@ def add_isosurface(
 
     >>> prop = progiso.add_isosurface(plotter, image, [10, 20], cmap="plasma", opacity=[1, 0.3])
     """
-    image = as_compressed(volume, rate, scalars, component, mask_nan=mask_nan)
+    keywords = dict(options)
+    rendering = take(RenderOptions, keywords)
+    image = as_compressed(volume, take(CompressionOptions, keywords, array=scalars))
     table = None
     if cmap is not None or (color is None and not isinstance(isovalue, Real)):
         if color is not None:
             raise ValueError("give either color or cmap, not both")
         table = _lookup_table(plotter, cmap, _checked_clim(clim, image), log_scale)
-    prop = make_isosurface(
-        image,
-        isovalue,
+    style = take(
+        SurfaceStyle,
+        keywords,
         color=_colors(plotter, color) if table is None else _color_function(table),
-        rate=rate,
-        speculation=speculation,
-        memory_budget=memory_budget,
-        shade=plotter.theme.lighting if lighting is None else lighting,
-        ambient=ambient,
-        diffuse=diffuse,
-        specular=specular,
-        specular_power=specular_power,
         opacity=opacity,
+        shade=plotter.theme.lighting if lighting is None else lighting,
     )
+    if keywords:
+        raise TypeError(f"add_isosurface() has no parameter {next(iter(keywords))!r}")
+    prop = style_isosurface(image, isovalue, style, rendering)
     _warn_of_nothing(prop, image)
     if user_matrix is not None:
         prop.SetUserMatrix(pyvista.vtkmatrix_from_array(_matrix(user_matrix)))
@@ -181,8 +194,8 @@ def add_isosurface(
     return prop
 
 
-def _warn_of_nothing(prop, image):
-    """Say so where no isovalue lies among the volume's values: the picture stays empty."""
+def _warn_of_nothing(prop: vtkIsosurfaceVolume, image: vtkImageData) -> None:
+    """Warn where all isovalues are outside the volume's values: the picture stays empty."""
     low, high = describe(image)["range"]
     isovalues = prop.GetProperty().GetIsoSurfaceValues()
     given = [isovalues.GetValue(i) for i in range(isovalues.GetNumberOfContours())]
@@ -194,68 +207,84 @@ def _warn_of_nothing(prop, image):
         )
 
 
-def add_isosurface_slider(plotter, volume, rng=None, value=None, **kwargs):
+def add_isosurface_slider(
+    plotter: pyvista.BasePlotter,
+    volume: ImageLike,
+    rng: tuple[float, float] | None = None,
+    value: float | None = None,
+    **options: Any,
+) -> vtkIsosurfaceVolume:
     """Add an isosurface with a slider; see :meth:`IsosurfaceComponent.add_isosurface_slider`."""
-    image = as_compressed(
-        volume,
-        kwargs.pop("rate", 8.0),
-        kwargs.pop("scalars", None),
-        kwargs.pop("component", 0),
-        mask_nan=kwargs.pop("mask_nan", False),
-    )
+    compression = take(CompressionOptions, options, array=options.pop("scalars", None))
+    image = as_compressed(volume, compression)
     about = describe(image)
     low, high = about["range"] if rng is None else rng
     slider = {
-        theirs: kwargs.pop(ours) for ours, theirs in _SLIDER_ARGUMENTS.items() if ours in kwargs
+        theirs: options.pop(ours) for ours, theirs in _SLIDER_ARGUMENTS.items() if ours in options
     }
     slider = {"title": about["array"], "interaction_event": "always", **slider}
     start = (low + high) / 2 if value is None else value
-    prop = add_isosurface(plotter, image, start, **kwargs)
+    prop = add_isosurface(plotter, image, start, **options)
     isovalues = prop.GetProperty().GetIsoSurfaceValues()
 
-    def move(isovalue):
+    def move(isovalue: float) -> None:
         isovalues.SetValue(0, isovalue)
 
-    plotter.add_slider_widget(move, (low, high), value=start, **slider)
+    add_slider: Any = plotter.add_slider_widget  # its decorator hides the signature
+    add_slider(move, (low, high), value=start, **slider)
     return prop
 
 
-def clip(prop, normal="x", origin=None, invert=True):
+def clip(
+    prop: vtkIsosurfaceVolume,
+    normal: str | Vector = "x",
+    origin: Vector | None = None,
+    *,
+    invert: bool = True,
+) -> None:
     """Clip a prop by one plane; see :meth:`IsosurfaceComponent.clip`."""
-    if isinstance(normal, str):
-        if normal.lstrip("+-") not in ("x", "y", "z"):
-            raise ValueError(f"normal must be x, y, z, -x, -y, -z or a vector, got {normal!r}")
-        axis = np.eye(3)["xyz".index(normal[-1])]
-        normal = -axis if normal[0] == "-" else axis
+    direction = _axis(normal) if isinstance(normal, str) else np.asarray(normal, float)
     plane = vtkPlane()
     plane.SetOrigin(prop.GetCenter() if origin is None else origin)
-    plane.SetNormal(np.negative(normal) if invert else normal)  # which points to what stays
+    plane.SetNormal(*(-direction if invert else direction))  # towards the side that stays
     planes = vtkPlaneCollection()
     planes.AddItem(plane)
     prop.GetMapper().SetClippingPlanes(planes)
 
 
+def _axis(name: str) -> npt.NDArray[np.float64]:
+    """Return the unit vector of x, -x, y and so on."""
+    if name.lstrip("+-") not in ("x", "y", "z"):
+        raise ValueError(f"normal must be x, y, z, -x, -y, -z or a vector, got {name!r}")
+    axis = np.eye(3)["xyz".index(name[-1])]
+    return -axis if name[0] == "-" else axis
+
+
 # ---- colours
 
 
-def _colors(plotter, color):
-    """Red, green and blue of every colour given, or of the theme's."""
+def _colors(plotter: pyvista.BasePlotter, color: Any) -> list[RGB]:
+    """Return red, green and blue of every colour given, or of the theme's."""
     default = plotter.theme.color
     given = [color] if color is None or isinstance(color, dict) else as_list(color, is_color)
     return [pyvista.Color(each, default_color=default).float_rgb for each in given]
 
 
-def _checked_clim(clim, image):
-    """Least and greatest isovalue of a map of colours."""
+def _checked_clim(clim: Any, image: vtkImageData) -> tuple[float, float]:
+    """Return the least and the greatest isovalue of a map of colours."""
     if clim is None:
-        return tuple(describe(image)["range"])
-    low, high = (-clim, clim) if isinstance(clim, Real) else clim
+        low, high = describe(image)["range"]
+        return low, high
+    ends: Any = (-clim, clim) if isinstance(clim, Real) else clim
+    low, high = ends
     if not low < high:
         raise ValueError(f"clim must be the least and the greatest isovalue, got {clim!r}")
     return low, high
 
 
-def _lookup_table(plotter, cmap, clim, log_scale):
+def _lookup_table(
+    plotter: pyvista.BasePlotter, cmap: Any, clim: tuple[float, float], log_scale: bool
+) -> pyvista.LookupTable:
     if isinstance(cmap, pyvista.LookupTable):
         return cmap
     if log_scale and clim[0] <= 0:
@@ -265,35 +294,38 @@ def _lookup_table(plotter, cmap, clim, log_scale):
     return pyvista.LookupTable(cmap, n_values=256, scalar_range=clim, log_scale=bool(log_scale))
 
 
-def _color_function(table):
-    """A transfer function with a lookup table's colours, also when its range changes."""
+def _color_function(table: pyvista.LookupTable) -> vtkColorTransferFunction:
+    """Make a transfer function with a lookup table's colours, also when its range changes."""
     function = vtkColorTransferFunction()
 
-    def fill(table, _event):
+    def fill(table: pyvista.LookupTable, _event: object) -> None:
         if table.log_scale:
             function.SetScaleToLog10()
         function.RemoveAllPoints()
         spread = np.geomspace if table.log_scale else np.linspace
-        for value in spread(*table.scalar_range, table.n_values):
+        low, high = table.scalar_range
+        for value in spread(low, high, table.n_values):
             function.AddRGBPoint(value, *table.map_value(value, opacity=False))
 
     fill(table, None)
-    table.AddObserver("ModifiedEvent", fill)  # the scalar bar is shared, and widened, by title
+    table.AddObserver("ModifiedEvent", fill)  # scalar bars of one title are shared, and widened
     return function
 
 
-def _add_scalar_bar(plotter, table, title, arguments):
+def _add_scalar_bar(
+    plotter: pyvista.BasePlotter,
+    table: pyvista.LookupTable,
+    title: str,
+    arguments: dict[str, Any] | None,
+) -> None:
     mapper = pyvista.DataSetMapper()
     mapper.lookup_table = table
     mapper.scalar_range = table.scalar_range
     plotter.add_scalar_bar(**{"title": title or "", "mapper": mapper, **(arguments or {})})
 
 
-# ---- what else is passed
-
-
-def _matrix(transform):
-    """A 4x4 array of a pyvista or VTK transform, matrix, or array."""
+def _matrix(transform: Any) -> npt.NDArray[np.float64]:
+    """Make a 4x4 array of a pyvista or VTK transform, matrix, or array."""
     if hasattr(transform, "GetMatrix"):
         transform = transform.GetMatrix()
     if hasattr(transform, "GetElement"):

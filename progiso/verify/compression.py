@@ -41,8 +41,8 @@ def _rate(field: Callable[[int], np.ndarray], rate: float, settings: Settings) -
 
 def _worth(plain: vtkImageData, image: vtkImageData, size: tuple[int, int]) -> str:
     """Tell how compression changes the surface, by the caster and FlyingEdges."""
-    eye = orbit_camera(plain, 1, 4)
-    eye = caster.Camera(eye.position, eye.focal_point, eye.view_up, eye.view_angle)
+    orbit = orbit_camera(plain, 1, 4)
+    eye = caster.Camera(orbit.position, orbit.focal_point, orbit.view_up, orbit.view_angle)
     original = caster.Volume.from_image(samples_of(plain), plain)
     exact, ours = (caster.cast(v, _ISOVALUE, eye, size) for v in (original, decoded(image)))
     error = depth_error(ours.depth, exact.depth, exact.voxels)

@@ -197,7 +197,7 @@ def _camera(
     up = np.eye(3)[np.argmin(np.abs(forward))]
     angle = rng.uniform(10, 40) if parallel else rng.uniform(10, 150)
     place, seen, upwards = (tuple(map(float, v)) for v in (position, target, up))
-    return Camera(place, seen, upwards, angle, parallel, scale)
+    return Camera(place, seen, upwards, view_angle=angle, parallel=parallel, parallel_scale=scale)
 
 
 def _direction(rng: np.random.Generator) -> np.ndarray:

@@ -229,4 +229,4 @@ def looking(
 ) -> Camera:
     """Make a `progiso.Camera` of numbers of any kind."""
     place, target, up = (tuple(map(float, v)) for v in (position, focal_point, view_up))
-    return Camera(place, target, up, float(view_angle))
+    return Camera(place, target, up, view_angle=float(view_angle))

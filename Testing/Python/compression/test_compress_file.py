@@ -12,7 +12,7 @@ import progiso
 import progiso.io.volumes
 from helpers.images import blobs, check_same, make_image
 from helpers.programs import compress_command
-from progiso.io import slab_files
+from progiso.io import slab_files, vtk_files, zfp
 
 SHAPE = (13, 7, 9)  # slices, rows, columns
 
@@ -285,14 +285,15 @@ def test_interrupted_writing_keeps_what_was_there(kind, tmp_path, monkeypatch):
     target = tmp_path / f"out{kind}"
     target.write_text("before")
     source = write_raw(tmp_path, "int16")
-    writing = progiso.io.volumes._write_with
+    writing = vtk_files.write_with
 
     def interrupt(writer, path):
         writing(writer, path)
         assert path.stat().st_size > 0
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(progiso.io.volumes, "_write_with", interrupt)
+    for module in (vtk_files, zfp):
+        monkeypatch.setattr(module, "write_with", interrupt)
     assert cli.main(compress_command(source, target)[3:]) == 130
     assert target.read_text() == "before"
     assert sorted(p.name for p in tmp_path.iterdir()) == sorted([source.name, target.name])

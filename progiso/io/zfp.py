@@ -1,0 +1,33 @@
+"""zfp's own format (``.zfp``): a fixed-rate stream, with or without zfp's header."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData
+
+from ..vtkProgIsoFilters import vtkZFPReader, vtkZFPWriter
+from .vtk_files import read_with, write_with
+
+
+def read_zfp(path: Path, dimensions: Sequence[int] | None, rate: float | None) -> vtkDataObject:
+    """Read a stream; without header, dimensions and rate are needed to make sense of it."""
+    reader = vtkZFPReader()
+    if dimensions is not None:
+        reader.SetDataDimensions([int(n) for n in dimensions])
+        reader.SetRate(8.0 if rate is None else rate)
+    elif not reader.CanReadFile(str(path)):
+        raise ValueError(
+            f"'{path}' has no zfp header of a fixed-rate 3-D float32 array; give dimensions and "
+            "rate of a file without header"
+        )
+    reader.SetArrayName(path.stem)
+    return read_with(reader, path)
+
+
+def write_zfp(image: vtkImageData, path: Path) -> None:
+    """Write a compressed volume's stream with zfp's header."""
+    writer = vtkZFPWriter()
+    writer.SetInputData(image)
+    write_with(writer, path)
