@@ -32,7 +32,7 @@ bool vtkCompressedVolume::IsCompressed(vtkDataObject* object)
 //------------------------------------------------------------------------------
 int vtkCompressedVolume::BlockBitsForRate(double rate)
 {
-  if (!(rate > 0.0 && rate <= MaximumBlockBits / 64))
+  if (!(rate > 0.0 && rate <= MaximumBlockBits / 64.0))
   {
     return 0;
   }

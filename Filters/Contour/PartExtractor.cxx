@@ -24,7 +24,8 @@ struct PartExtractor::CountedSamples : Bricks::Samples
   // Counts the bytes that are held now.
   void UpdateCount()
   {
-    const vtkTypeInt64 bytes = static_cast<vtkTypeInt64>(sizeof(float) * this->Values.capacity());
+    const auto capacity = static_cast<vtkTypeInt64>(this->Values.capacity());
+    const vtkTypeInt64 bytes = capacity * static_cast<vtkTypeInt64>(sizeof(float));
     const vtkTypeInt64 now = this->Owner.SampleBytes += bytes - this->Counted;
     this->Counted = bytes;
     vtkTypeInt64 peak = this->Owner.PeakSampleBytes;

@@ -296,7 +296,7 @@ Status ReadUnits(vtkImageData* image, Volume* volume)
   for (const auto& [name, value] : { std::pair<const char*, double*>(OffsetName, &offset),
          std::pair<const char*, double*>(ScaleName, &scale) })
   {
-    const Status status = fields->HasArray(name) ? GetReals(fields, name, 1, value) : Status();
+    Status status = fields->HasArray(name) ? GetReals(fields, name, 1, value) : Status();
     if (!status)
     {
       return status;

@@ -82,7 +82,8 @@ void CaptureDepths(const std::int32_t part[4], GLuint buffer, std::int64_t offse
     glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer);
     glPixelStorei(GL_PACK_ALIGNMENT, 4);
     glReadPixels(part[2], part[3], part[0], part[1], GL_DEPTH_COMPONENT, GL_FLOAT,
-      reinterpret_cast<void*>(static_cast<std::intptr_t>(offset)));
+      reinterpret_cast<void*>( // NOLINT(performance-no-int-to-ptr): an offset into the buffer
+        static_cast<std::intptr_t>(offset)));
     glPixelStorei(GL_PACK_ALIGNMENT, alignment);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   }
