@@ -1,4 +1,4 @@
-// Renders the isosurface of a generated field to a PNG: compress, hand the volume to the mapper, render.
+// Renders the isosurface of a generated field to a PNG: compress, hand over, render.
 //   isosurface [output.png]
 #include <vtkCamera.h>
 #include <vtkColorTransferFunction.h>
@@ -41,8 +41,8 @@ void Gyroid(vtkImageData* image, int size)
         const double y = j * step;
         const double z = k * step;
         values->SetValue(id,
-          static_cast<float>(std::sin(x) * std::cos(y) + std::sin(y) * std::cos(z) +
-            std::sin(z) * std::cos(x)));
+          static_cast<float>(
+            std::sin(x) * std::cos(y) + std::sin(y) * std::cos(z) + std::sin(z) * std::cos(x)));
       }
     }
   }
