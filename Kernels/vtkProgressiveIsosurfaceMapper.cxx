@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkProgressiveIsosurfaceMapper.h"
 
+#include "GL/Stopwatch.h"
 #include "Pipeline/ProgressivePipeline.h"
 #include "Scene/CompressedInput.h"
 #include "Scene/SceneTranslation.h"
@@ -44,7 +45,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -53,14 +53,8 @@
 
 namespace
 {
-using Clock = std::chrono::steady_clock;
 
 constexpr int AloneAgain = 3; // renders of one view after which no other one is expected
-
-double MillisecondsSince(Clock::time_point start)
-{
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 // Tells contexts apart, also those that a window has one after the other. An external window says
 // at each render that its context is new.
@@ -530,9 +524,9 @@ bool vtkProgressiveIsosurfaceMapper::Internals::UpdateScene(
   }
   if (!this->Pipeline.IsStarted())
   {
-    const Clock::time_point start = Clock::now();
+    const Stopwatch stopwatch;
     this->Pipeline.Start();
-    this->TotalMilliseconds = MillisecondsSince(start);
+    this->TotalMilliseconds = stopwatch.GetMilliseconds();
   }
   return true;
 }
@@ -549,12 +543,12 @@ bool vtkProgressiveIsosurfaceMapper::Internals::MayRefineLater(vtkOpenGLRenderWi
 // Passes, as many as there is time for, and the image as far as it has come.
 bool vtkProgressiveIsosurfaceMapper::Internals::Refine(vtkOpenGLRenderWindow* window)
 {
-  const Clock::time_point start = Clock::now();
+  const Stopwatch stopwatch;
   const bool interactive = this->MayRefineLater(window);
   const double allowance = this->Owner->TimeAllowance;
   auto stop = [&]()
   {
-    const bool late = interactive && MillisecondsSince(start) >= 1e3 * allowance;
+    const bool late = interactive && stopwatch.GetMilliseconds() >= 1e3 * allowance;
     const bool aborted = window->CheckAbortStatus() != 0; // asks observers, who may do anything
     if (!window->IsCurrent())
     {
@@ -582,7 +576,7 @@ bool vtkProgressiveIsosurfaceMapper::Internals::Refine(vtkOpenGLRenderWindow* wi
   this->Pipeline.CompleteStatistics();
   if (unfinished)
   {
-    this->TotalMilliseconds += MillisecondsSince(start);
+    this->TotalMilliseconds += stopwatch.GetMilliseconds();
   }
   return true;
 }
@@ -951,7 +945,7 @@ bool vtkProgressiveIsosurfaceMapper::GetHit(int x, int y, double position[3], do
   impl->EyeToWorld->MultiplyPoint(point, point);
   std::copy(point, point + 3, position);
   isovalue = impl->Values.GetVolume()->ToSample(
-    double(view.Isovalues[hit.Surface].High) + view.Isovalues[hit.Surface].Low);
+    double(view.Isovalues[hit.Isovalue].High) + view.Isovalues[hit.Isovalue].Low);
   return true;
 }
 

@@ -41,7 +41,7 @@ PixelHit HitReadback::Read(std::int64_t pixel)
   {
     std::uint32_t isovalues = 0; // of the first hit in the upper half
     this->Transfer.Read(this->Hits, Offset(this->Extent, IsovalueSection, pixel), &isovalues, 4);
-    hit.Surface = isovalues >> 16;
+    hit.Isovalue = isovalues >> 16;
   }
   return hit;
 }

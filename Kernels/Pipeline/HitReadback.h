@@ -15,8 +15,8 @@
 struct PixelHit
 {
   std::uint32_t Key = glsl::NO_HIT;
-  float Depth = 0.0f;        ///< parameter t of the first hit
-  std::uint32_t Surface = 0; ///< first hit's isovalue, among those that show
+  float Depth = 0.0f;         ///< parameter t of the first hit
+  std::uint32_t Isovalue = 0; ///< index of the first hit's, among those that show
 };
 
 class HitReadback

@@ -28,6 +28,19 @@ glsl::Volume DescribeVolume(const VolumeSize& size, const PipelineVolume& volume
   block.NumberOfMacrocells = static_cast<std::uint32_t>(size.GetNumberOfMacrocells());
   return block;
 }
+
+std::set<Stage> StagesOf(Moment moment, const PipelineExtent& extent)
+{
+  std::set<Stage> stages;
+  for (const StageInfo& info : PipelineStages())
+  {
+    if (info.IsNeeded(moment, extent))
+    {
+      stages.insert(info.Id);
+    }
+  }
+  return stages;
+}
 }
 
 Status ProgressivePipeline::Initialize(std::uint64_t contextId)
@@ -319,15 +332,19 @@ void ProgressivePipeline::Start()
   this->Log.StartImage(this->Extent.Pixels);
   this->PassesBeforeCache = 0;
   this->Started = true;
-  std::set<Stage> forVolume;
-  for (const StageInfo& info : PipelineStages())
+  this->Gpu->Timer.StartImage(StagesOf(Moment::Volume, this->Extent));
+  this->ClearImage();
+  const std::uint32_t yes = 1;
+  this->Gpu->Transfer.Write(this->Gpu->Buffers.GetName(Buffer::Control),
+    offsetof(ControlBlock, NewImage), &yes, sizeof(yes));
+  if (this->CheckMemory()) // else the stages may never come to an end
   {
-    if (info.IsNeeded(Moment::Volume, this->Extent))
-    {
-      forVolume.insert(info.Id);
-    }
+    this->Gpu->Dispatch(Stage::PlanPass, 1);
   }
-  this->Gpu->Timer.StartImage(forVolume);
+}
+
+void ProgressivePipeline::ClearImage()
+{
   this->Gpu->Buffers.Fill(Buffer::Hits, glsl::NO_HIT);
   this->Gpu->Buffers.Fill(Buffer::Normals, glsl::NO_NORMAL);
   this->Gpu->Buffers.Fill(Buffer::Layers, 0);
@@ -335,13 +352,6 @@ void ProgressivePipeline::Start()
   {
     CaptureDepths(this->Viewport, this->Gpu->Buffers.GetName(Buffer::Hits),
       HitReadback::GetObstacleOffset(this->Extent));
-  }
-  const std::uint32_t yes = 1;
-  this->Gpu->Transfer.Write(this->Gpu->Buffers.GetName(Buffer::Control),
-    offsetof(ControlBlock, NewImage), &yes, sizeof(yes));
-  if (this->CheckMemory()) // else the stages may never come to an end
-  {
-    this->Gpu->Dispatch(Stage::PlanPass, 1);
   }
 }
 

@@ -99,6 +99,7 @@ private:
   Status MakeCache(bool newImage);
   void ResizeCache(std::int64_t slots);
   void UploadCacheBlock();
+  void ClearImage();
   void RunPass();
   void RunStage(Stage stage);
   void AwaitPass();

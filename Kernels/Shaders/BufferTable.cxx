@@ -14,7 +14,7 @@ const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers()
       "3 KB", [](const E&) -> std::int64_t { return PassRecords * sizeof(PassRecord); },
       Access::Read, "ring of the last passes' records" },
     { Buffer::Stream, "compressed", "STREAM", Lifetime::Volume, Always, "the ZFP stream",
-      [](const E&) -> std::int64_t { return 0; }, // segments of its own: Device::UploadStream
+      [](const E&) -> std::int64_t { return 0; }, // it has segments of its own: StreamStore
       Access::Write,
       "the compressed volume, in as many segments as it takes; without a cache, "
       "while it is decoded" },
