@@ -109,7 +109,7 @@ def make_isosurface(
 def style_isosurface(
     image: ImageLike, isovalue: Isovalues, style: SurfaceStyle, options: RenderOptions
 ) -> vtkIsosurfaceVolume:
-    """Make a prop as `make_isosurface` does; a plain image is compressed at the mapper's own rate."""
+    """Make a prop as `make_isosurface` does, a plain image at the mapper's own rate."""
     mapper = vtkProgressiveIsosurfaceMapper()
     mapper.SetInputData(as_image(image))
     mapper.SetLitLikeMeshes(True)  # users expect the light that a contour's mesh would get

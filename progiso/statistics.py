@@ -48,7 +48,7 @@ def statistics(
     dict
         ``passes``
             One dict for each pass, with the keys of `PASS_KEYS`: counts, ``completed`` from 0 to 1
-            and ``elapsed_ms``. ``visible_blocks`` and ``active_blocks`` are None unless the mapper's
+            and ``elapsed_ms``. ``visible_blocks`` and ``active_blocks`` are None unless
             ``DetailedStatistics`` are on.
         ``total_ms``
             Milliseconds over all passes.

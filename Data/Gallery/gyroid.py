@@ -1,4 +1,4 @@
-"""A noisy gyroid, 512³, made and compressed slab by slab (2 bits a sample), coloured by isovalue."""
+"""A noisy gyroid, 512³, compressed slab by slab (2 bits a sample), coloured by isovalue."""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Volumes in files of every kind: `read`, `save` and `compress_file` choose the format by suffix."""
+"""Read, save and compress volumes in files of every kind, chosen by suffix."""
 
 from __future__ import annotations
 
