@@ -36,20 +36,6 @@ namespace test
 {
 using Dims = std::array<int, 3>;
 
-inline int Failures = 0;
-
-// Counts and describes a failed expectation; the test goes on.
-#define EXPECT(condition, description)                                                             \
-  do                                                                                               \
-  {                                                                                                \
-    if (!(condition))                                                                              \
-    {                                                                                              \
-      ++test::Failures;                                                                            \
-      std::cerr << __FILE__ << ":" << __LINE__ << ": " #condition ": " << description              \
-                << std::endl;                                                                      \
-    }                                                                                              \
-  } while (false)
-
 inline vtkIdType Product(const Dims& dims)
 {
   return static_cast<vtkIdType>(dims[0]) * dims[1] * dims[2];
@@ -197,12 +183,6 @@ inline bool SameGeometry(vtkImageData* a, vtkImageData* b)
       a->GetOrigin()[i % 3] == b->GetOrigin()[i % 3];
   }
   return same;
-}
-
-inline int Result()
-{
-  std::cout << (Failures ? "FAILED" : "passed") << std::endl;
-  return Failures ? EXIT_FAILURE : EXIT_SUCCESS;
 }
 }
 

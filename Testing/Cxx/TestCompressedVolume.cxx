@@ -5,6 +5,8 @@
 // the wrong type, inconsistent, truncated or too large.
 #include "CompressionTestTools.h"
 
+#include <gtest/gtest.h>
+
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
 #include <vtkIntArray.h>
@@ -20,26 +22,27 @@ using namespace test;
 const Dims Size = { 9, 4, 6 };
 
 //------------------------------------------------------------------------------
-void TestStatics()
+TEST(CompressedVolume, Statics)
 {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT(vtkCompressedVolume::BlockBitsForRate(8.0) == 512, "8");
-  EXPECT(vtkCompressedVolume::BlockBitsForRate(1.03) == 66, "rounded");
-  EXPECT(vtkCompressedVolume::BlockBitsForRate(1e-9) == 9, "least");
-  EXPECT(vtkCompressedVolume::BlockBitsForRate(32.0) == 2048, "most");
-  EXPECT(vtkCompressedVolume::BlockBitsForRate(32.1) == 0, "too much");
-  EXPECT(vtkCompressedVolume::BlockBitsForRate(0.0) == 0, "zero");
-  EXPECT(vtkCompressedVolume::BlockBitsForRate(nan) == 0, "NaN");
+  EXPECT_TRUE(vtkCompressedVolume::BlockBitsForRate(8.0) == 512) << "8";
+  EXPECT_TRUE(vtkCompressedVolume::BlockBitsForRate(1.03) == 66) << "rounded";
+  EXPECT_TRUE(vtkCompressedVolume::BlockBitsForRate(1e-9) == 9) << "least";
+  EXPECT_TRUE(vtkCompressedVolume::BlockBitsForRate(32.0) == 2048) << "most";
+  EXPECT_TRUE(vtkCompressedVolume::BlockBitsForRate(32.1) == 0) << "too much";
+  EXPECT_TRUE(vtkCompressedVolume::BlockBitsForRate(0.0) == 0) << "zero";
+  EXPECT_TRUE(vtkCompressedVolume::BlockBitsForRate(nan) == 0) << "NaN";
 
   const int most = std::numeric_limits<int>::max();
   const int small[3] = { 5, 4, 1 };
   const int huge[3] = { most, most, 16 };
   const int impossible[3] = { most, most, most };
-  EXPECT(vtkCompressedVolume::NumberOfBlocksFor(small) == 2, "small");
-  EXPECT(vtkCompressedVolume::StreamBytesFor(small, 33) == 16, "66 bits");
-  EXPECT(vtkCompressedVolume::NumberOfBlocksFor(huge) == vtkTypeInt64(1) << 60, "beyond 32 bits");
-  EXPECT(vtkCompressedVolume::NumberOfBlocksFor(impossible) == -1, "overflow of blocks");
-  EXPECT(vtkCompressedVolume::StreamBytesFor(huge, 512) == -1, "overflow of bits");
+  EXPECT_TRUE(vtkCompressedVolume::NumberOfBlocksFor(small) == 2) << "small";
+  EXPECT_TRUE(vtkCompressedVolume::StreamBytesFor(small, 33) == 16) << "66 bits";
+  EXPECT_TRUE(vtkCompressedVolume::NumberOfBlocksFor(huge) == vtkTypeInt64(1) << 60)
+    << "beyond 32 bits";
+  EXPECT_TRUE(vtkCompressedVolume::NumberOfBlocksFor(impossible) == -1) << "overflow of blocks";
+  EXPECT_TRUE(vtkCompressedVolume::StreamBytesFor(huge, 512) == -1) << "overflow of bits";
 }
 
 //------------------------------------------------------------------------------
@@ -59,8 +62,8 @@ bool ReadWith(const char* name, vtkAbstractArray* array, const std::string& word
   if (!read)
   {
     const bool named = volume->GetErrorMessage().find(words) != std::string::npos;
-    EXPECT(named, "expected '" << words << "', got: " << volume->GetErrorMessage());
-    EXPECT(!volume->GetStream() && volume->GetBlockBits() == 0, "nothing left of it");
+    EXPECT_TRUE(named) << "expected '" << words << "', got: " << volume->GetErrorMessage();
+    EXPECT_TRUE(!volume->GetStream() && volume->GetBlockBits() == 0) << "nothing left of it";
   }
   return read;
 }
@@ -77,35 +80,44 @@ vtkSmartPointer<ArrayT> Values(std::initializer_list<typename ArrayT::ValueType>
 }
 
 //------------------------------------------------------------------------------
-void TestRejects()
+TEST(CompressedVolume, Rejects)
 {
   for (const char* name : { "Version", "BlockBits", "Dimensions", "Range", "ScalarType",
          "ArrayName", "Component", "Association", "Stream" })
   {
-    EXPECT(!ReadWith(name, nullptr, name), name << " missing");
-    EXPECT(!ReadWith(name, Values<vtkFloatArray>({ 1.f }), name), name << " of wrong type");
+    EXPECT_FALSE(ReadWith(name, nullptr, name)) << name << " missing";
+    EXPECT_FALSE(ReadWith(name, Values<vtkFloatArray>({ 1.f }), name)) << name << " of wrong type";
   }
   const vtkTypeInt64 beyond = vtkTypeInt64(1) << 62;
-  EXPECT(!ReadWith("Version", Values<vtkIntArray>({ 3 }), "version 3"), "version");
-  EXPECT(!ReadWith("BlockBits", Values<vtkIntArray>({ 8 }), "BlockBits is 8"), "too few");
-  EXPECT(!ReadWith("BlockBits", Values<vtkIntArray>({ 2049 }), "BlockBits is 2049"), "too many");
-  EXPECT(
-    !ReadWith("BlockBits", Values<vtkTypeInt64Array>({ beyond + 512 }), "BlockBits"), "64 bits");
-  EXPECT(
-    !ReadWith("BlockBits", Values<vtkIntArray>({ 513 }), "truncated"), "longer than the stream");
-  EXPECT(!ReadWith("Dimensions", Values<vtkIntArray>({ 9, 4 }), "3 integer values"), "two");
-  EXPECT(!ReadWith("Dimensions", Values<vtkIntArray>({ 9, 4, 7 }), "axis 2"), "not the image's");
-  EXPECT(!ReadWith("Dimensions", Values<vtkTypeInt64Array>({ beyond, 4, 6 }), "axis 0"), "64 bits");
-  EXPECT(!ReadWith("Association", Values<vtkIntArray>({ 1 }), "axis 0"), "cells are fewer");
-  EXPECT(!ReadWith("Association", Values<vtkIntArray>({ 2 }), "Association is 2"), "association");
-  EXPECT(!ReadWith("Component", Values<vtkIntArray>({ -1 }), "Component is -1"), "component");
-  EXPECT(!ReadWith("ScalarType", Values<vtkIntArray>({ VTK_STRING }), "ScalarType is 13"), "type");
+  EXPECT_FALSE(ReadWith("Version", Values<vtkIntArray>({ 3 }), "version 3")) << "version";
+  EXPECT_FALSE(ReadWith("BlockBits", Values<vtkIntArray>({ 8 }), "BlockBits is 8")) << "too few";
+  EXPECT_FALSE(ReadWith("BlockBits", Values<vtkIntArray>({ 2049 }), "BlockBits is 2049"))
+    << "too many";
+  EXPECT_FALSE(ReadWith("BlockBits", Values<vtkTypeInt64Array>({ beyond + 512 }), "BlockBits"))
+    << "64 bits";
+  EXPECT_FALSE(ReadWith("BlockBits", Values<vtkIntArray>({ 513 }), "truncated"))
+    << "longer than the stream";
+  EXPECT_FALSE(ReadWith("Dimensions", Values<vtkIntArray>({ 9, 4 }), "3 integer values")) << "two";
+  EXPECT_FALSE(ReadWith("Dimensions", Values<vtkIntArray>({ 9, 4, 7 }), "axis 2"))
+    << "not the image's";
+  EXPECT_FALSE(ReadWith("Dimensions", Values<vtkTypeInt64Array>({ beyond, 4, 6 }), "axis 0"))
+    << "64 bits";
+  EXPECT_FALSE(ReadWith("Association", Values<vtkIntArray>({ 1 }), "axis 0")) << "cells are fewer";
+  EXPECT_FALSE(ReadWith("Association", Values<vtkIntArray>({ 2 }), "Association is 2"))
+    << "association";
+  EXPECT_FALSE(ReadWith("Component", Values<vtkIntArray>({ -1 }), "Component is -1"))
+    << "component";
+  EXPECT_FALSE(ReadWith("ScalarType", Values<vtkIntArray>({ VTK_STRING }), "ScalarType is 13"))
+    << "type";
   const double infinity = std::numeric_limits<double>::infinity();
-  EXPECT(!ReadWith("Range", Values<vtkDoubleArray>({ 0.0, infinity }), "Range"), "infinite");
-  EXPECT(!ReadWith("Range", Values<vtkDoubleArray>({ 1.0, 0.0 }), "Range"), "reversed");
-  EXPECT(!ReadWith("Stream", Values<vtkSignedCharArray>({ 0 }), "unsigned char"), "signed stream");
-  EXPECT(!ReadWith("Stream", Values<vtkUnsignedCharArray>({ 0 }), "truncated"), "short stream");
-  EXPECT(ReadWith("Dimensions", Values<vtkIntArray>({ 9, 4, 6 }), ""), "any integer type will do");
+  EXPECT_FALSE(ReadWith("Range", Values<vtkDoubleArray>({ 0.0, infinity }), "Range")) << "infinite";
+  EXPECT_FALSE(ReadWith("Range", Values<vtkDoubleArray>({ 1.0, 0.0 }), "Range")) << "reversed";
+  EXPECT_FALSE(ReadWith("Stream", Values<vtkSignedCharArray>({ 0 }), "unsigned char"))
+    << "signed stream";
+  EXPECT_FALSE(ReadWith("Stream", Values<vtkUnsignedCharArray>({ 0 }), "truncated"))
+    << "short stream";
+  EXPECT_TRUE(ReadWith("Dimensions", Values<vtkIntArray>({ 9, 4, 6 }), ""))
+    << "any integer type will do";
 }
 
 //------------------------------------------------------------------------------
@@ -119,8 +131,9 @@ void ExpectRefusedExtent(int low, int high, const std::string& words)
   image->SetExtent(low, high, low, high, low, high);
   image->GetFieldData()->AddArray(dims);
   vtkNew<vtkCompressedVolume> volume;
-  EXPECT(!volume->Read(image), low << " to " << high);
-  EXPECT(volume->GetErrorMessage().find(words) != std::string::npos, volume->GetErrorMessage());
+  EXPECT_FALSE(volume->Read(image)) << low << " to " << high;
+  EXPECT_TRUE(volume->GetErrorMessage().find(words) != std::string::npos)
+    << volume->GetErrorMessage();
 }
 
 // A stream's extent that has 2 points where 64-bit integers wrap.
@@ -140,12 +153,13 @@ void ExpectRefusedWrapping()
   image->GetFieldData()->AddArray(dims);
   image->GetFieldData()->AddArray(extent);
   vtkNew<vtkCompressedVolume> volume;
-  EXPECT(!volume->Read(image), "wrapping");
-  EXPECT(volume->GetErrorMessage().find("axis 0") != std::string::npos, volume->GetErrorMessage());
+  EXPECT_FALSE(volume->Read(image)) << "wrapping";
+  EXPECT_TRUE(volume->GetErrorMessage().find("axis 0") != std::string::npos)
+    << volume->GetErrorMessage();
 }
 
 // An image without points, or cells, cannot be a part of what a stream covers.
-void TestEmptyPieces()
+TEST(CompressedVolume, EmptyPieces)
 {
   for (const bool cells : { false, true })
   {
@@ -154,13 +168,14 @@ void TestEmptyPieces()
     image->SetExtent(
       extent[0], extent[1], extent[2] + 1, extent[2] + (cells ? 1 : 0), extent[4], extent[5]);
     vtkNew<vtkCompressedVolume> volume;
-    EXPECT(!volume->Read(image), "empty");
+    EXPECT_FALSE(volume->Read(image)) << "empty";
     const char* words = cells ? "no cells along axis 1" : "no points along axis 1";
-    EXPECT(volume->GetErrorMessage().find(words) != std::string::npos, volume->GetErrorMessage());
+    EXPECT_TRUE(volume->GetErrorMessage().find(words) != std::string::npos)
+      << volume->GetErrorMessage();
   }
 }
 
-void TestHugeExtent()
+TEST(CompressedVolume, HugeExtent)
 {
   const int most = std::numeric_limits<int>::max(), limit = 1 << 30;
   ExpectRefusedExtent(0, limit, "truncated");
@@ -173,38 +188,28 @@ void TestHugeExtent()
 }
 
 //------------------------------------------------------------------------------
-void TestReadAndWrite()
+TEST(CompressedVolume, ReadAndWrite)
 {
   const auto image = Compress(FloatImage(Size), 2.7);
   vtkNew<vtkCompressedVolume> volume;
-  EXPECT(volume->Read(image), volume->GetErrorMessage());
+  EXPECT_TRUE(volume->Read(image)) << volume->GetErrorMessage();
   int blocks[3];
   volume->GetBlocks(blocks);
-  EXPECT(blocks[0] == 3 && blocks[1] == 1 && blocks[2] == 2, "blocks");
-  EXPECT(volume->GetNumberOfBlocks() == 6 && volume->GetBlockBits() == 173, "bits");
+  EXPECT_TRUE(blocks[0] == 3 && blocks[1] == 1 && blocks[2] == 2) << "blocks";
+  EXPECT_TRUE(volume->GetNumberOfBlocks() == 6 && volume->GetBlockBits() == 173) << "bits";
 
   vtkNew<vtkImageData> other;
   other->CopyStructure(image);
   volume->Write(other);
   vtkNew<vtkCompressedVolume> again;
-  EXPECT(again->Read(other), again->GetErrorMessage());
-  EXPECT(again->GetStream() == volume->GetStream(), "the stream is shared");
+  EXPECT_TRUE(again->Read(other)) << again->GetErrorMessage();
+  EXPECT_TRUE(again->GetStream() == volume->GetStream()) << "the stream is shared";
   vtkCompressedVolume::Remove(other);
-  EXPECT(!vtkCompressedVolume::IsCompressed(other), "removed");
-  EXPECT(vtkCompressedVolume::IsCompressed(image), "but not from the original");
-  EXPECT(!again->Read(nullptr) && !again->GetStream(), "no image");
+  EXPECT_FALSE(vtkCompressedVolume::IsCompressed(other)) << "removed";
+  EXPECT_TRUE(vtkCompressedVolume::IsCompressed(image)) << "but not from the original";
+  EXPECT_TRUE(!again->Read(nullptr) && !again->GetStream()) << "no image";
   std::ostringstream text;
   volume->Print(text);
-  EXPECT(text.str().find("BlockBits: 173") != std::string::npos, text.str());
+  EXPECT_TRUE(text.str().find("BlockBits: 173") != std::string::npos) << text.str();
 }
-}
-
-int main()
-{
-  TestStatics();
-  TestRejects();
-  TestHugeExtent();
-  TestEmptyPieces();
-  TestReadAndWrite();
-  return test::Result();
 }

@@ -5,6 +5,8 @@
 // it refuses.
 #include "CompressionTestTools.h"
 
+#include <gtest/gtest.h>
+
 #include <vtkCompressedVolumeBuilder.h>
 #include <vtkDoubleArray.h>
 
@@ -32,45 +34,46 @@ vtkSmartPointer<vtkFloatArray> Slab(
 }
 
 //------------------------------------------------------------------------------
-void TestAgainstReference(const Dims& dims, double rate, int depth)
+void ExpectReference(const Dims& dims, double rate, int depth)
 {
   const std::vector<float> values = Samples(dims);
   vtkNew<vtkCompressedVolumeBuilder> builder;
-  EXPECT(builder->Start(dims.data(), rate), builder->GetErrorMessage());
+  EXPECT_TRUE(builder->Start(dims.data(), rate)) << builder->GetErrorMessage();
   for (int z = 0; z < dims[2]; z += depth)
   {
     const int last = std::min(z + depth, dims[2]);
-    EXPECT(builder->AddSlab(Slab(dims, values, z, last), 1), builder->GetErrorMessage());
-    EXPECT(builder->GetNumberOfSlices() == last, builder->GetNumberOfSlices());
+    EXPECT_TRUE(builder->AddSlab(Slab(dims, values, z, last), 1)) << builder->GetErrorMessage();
+    EXPECT_TRUE(builder->GetNumberOfSlices() == last) << builder->GetNumberOfSlices();
   }
   vtkNew<vtkImageData> image;
   image->SetSpacing(1, 2, 3);
-  EXPECT(builder->Finish(image), builder->GetErrorMessage());
+  EXPECT_TRUE(builder->Finish(image)) << builder->GetErrorMessage();
 
   vtkNew<vtkCompressedVolume> volume;
-  EXPECT(volume->Read(image), volume->GetErrorMessage());
-  EXPECT(Reference(dims, values, rate).Equals(volume->GetStream()), "depth " << depth);
+  EXPECT_TRUE(volume->Read(image)) << volume->GetErrorMessage();
+  EXPECT_TRUE(Reference(dims, values, rate).Equals(volume->GetStream())) << "depth " << depth;
   const auto range = std::minmax_element(values.begin(), values.end());
-  EXPECT(volume->GetRange()[0] == *range.first && volume->GetRange()[1] == *range.second, rate);
-  EXPECT(volume->GetArrayName() == "density" && volume->GetComponent() == 1 &&
-      volume->GetScalarType() == VTK_FLOAT && volume->GetAssociation() == 0,
-    "metadata");
-  EXPECT(image->GetSpacing()[2] == 3.0 && image->GetDimensions()[1] == dims[1], "geometry");
+  EXPECT_TRUE(volume->GetRange()[0] == *range.first && volume->GetRange()[1] == *range.second)
+    << rate;
+  EXPECT_TRUE(volume->GetArrayName() == "density" && volume->GetComponent() == 1 &&
+    volume->GetScalarType() == VTK_FLOAT && volume->GetAssociation() == 0)
+    << "metadata";
+  EXPECT_TRUE(image->GetSpacing()[2] == 3.0 && image->GetDimensions()[1] == dims[1]) << "geometry";
 }
 
 //------------------------------------------------------------------------------
 // Whether the builder objects with these words, and then to everything until it is started anew.
 void ExpectRefusal(vtkCompressedVolumeBuilder* builder, bool result, const std::string& words)
 {
-  EXPECT(!result && builder->GetErrorMessage().find(words) != std::string::npos,
-    words << " not in: " << builder->GetErrorMessage());
+  EXPECT_TRUE(!result && builder->GetErrorMessage().find(words) != std::string::npos)
+    << words << " not in: " << builder->GetErrorMessage();
   vtkNew<vtkImageData> image;
-  EXPECT(!builder->Finish(image) && !builder->GetErrorMessage().empty(), words);
-  EXPECT(!vtkCompressedVolume::IsCompressed(image), words);
+  EXPECT_TRUE(!builder->Finish(image) && !builder->GetErrorMessage().empty()) << words;
+  EXPECT_FALSE(vtkCompressedVolume::IsCompressed(image)) << words;
 }
 
 //------------------------------------------------------------------------------
-void TestRefusals()
+TEST(CompressedVolumeBuilder, Refusals)
 {
   const Dims dims = { 5, 6, 9 };
   const int flat[3] = { 5, 6, 1 };
@@ -85,7 +88,7 @@ void TestRefusals()
   const auto refuses = [&](vtkDataArray* slab, int component, const char* words)
   {
     builder->Start(dims.data(), 8.0);
-    EXPECT(builder->AddSlab(four), builder->GetErrorMessage());
+    EXPECT_TRUE(builder->AddSlab(four)) << builder->GetErrorMessage();
     ExpectRefusal(builder, builder->AddSlab(slab, component), words);
   };
   refuses(all, 0, "9 slices where 5 are left");
@@ -103,19 +106,18 @@ void TestRefusals()
   refuses(bad, 1, "Slices 4 to 7 have 1 NaN and 1 infinite");
 
   builder->Start(dims.data(), 8.0);
-  EXPECT(builder->AddSlab(four), builder->GetErrorMessage());
+  EXPECT_TRUE(builder->AddSlab(four)) << builder->GetErrorMessage();
   vtkNew<vtkImageData> image;
   ExpectRefusal(builder, builder->Finish(image), "4 slices of 9");
 
   builder->Start(dims.data(), 8.0);
   all->Fill(1e-31);
-  EXPECT(builder->AddSlab(all), builder->GetErrorMessage());
+  EXPECT_TRUE(builder->AddSlab(all)) << builder->GetErrorMessage();
   ExpectRefusal(builder, builder->Finish(image), "too small");
-}
 }
 
 //------------------------------------------------------------------------------
-int main()
+TEST(CompressedVolumeBuilder, EqualsReference)
 {
   for (const double rate : { 9.0 / 64.0, 1.0, 3.0, 5.25, 16.0, 32.0 })
   {
@@ -123,12 +125,16 @@ int main()
     {
       for (const int depth : { 4, 8, 32 })
       {
-        TestAgainstReference(dims, rate, depth);
+        ExpectReference(dims, rate, depth);
       }
     }
   }
-  TestRefusals();
+}
+
+//------------------------------------------------------------------------------
+TEST(CompressedVolumeBuilder, Prints)
+{
   vtkNew<vtkCompressedVolumeBuilder> builder;
   builder->Print(std::cout);
-  return Result();
+}
 }

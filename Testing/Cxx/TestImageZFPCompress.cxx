@@ -5,6 +5,8 @@
 // the pipeline around it.
 #include "CompressionTestTools.h"
 
+#include <gtest/gtest.h>
+
 #include <vtkBitArray.h>
 #include <vtkCommand.h>
 #include <vtkDataSetAttributes.h>
@@ -22,12 +24,12 @@ using namespace test;
 vtkSmartPointer<vtkCompressedVolume> Read(vtkImageData* image)
 {
   auto volume = vtkSmartPointer<vtkCompressedVolume>::New();
-  EXPECT(volume->Read(image), volume->GetErrorMessage());
+  EXPECT_TRUE(volume->Read(image)) << volume->GetErrorMessage();
   return volume;
 }
 
 //------------------------------------------------------------------------------
-void TestRatesShapesThreads()
+TEST(ImageZFPCompress, RatesShapesThreads)
 {
   const double rates[] = { 0.01, 0.5, 1.0, 1.03, 2.7, 8.0, 9.99, 16.0, 31.99, 32.0 };
   const Dims shapes[] = { { 2, 2, 2 }, { 5, 3, 7 }, { 4, 4, 4 }, { 9, 4, 6 }, { 3, 17, 33 },
@@ -45,27 +47,27 @@ void TestRatesShapesThreads()
       compress->Update();
       const Reference reference(dims, Samples(dims), rate);
       const auto volume = Read(compress->GetOutput());
-      EXPECT(reference.Equals(volume->GetStream()), dims[0] << " wide at rate " << rate);
-      EXPECT(volume->GetRate() == reference.Rate, rate);
-      EXPECT(compress->GetActualRate() == reference.Rate, rate);
+      EXPECT_TRUE(reference.Equals(volume->GetStream())) << dims[0] << " wide at rate " << rate;
+      EXPECT_TRUE(volume->GetRate() == reference.Rate) << rate;
+      EXPECT_TRUE(compress->GetActualRate() == reference.Rate) << rate;
     }
   }
 }
 
 //------------------------------------------------------------------------------
 // Large enough for several steps, which meet inside a group of blocks and inside a word.
-void TestSteps()
+TEST(ImageZFPCompress, Steps)
 {
   const Dims dims = { 301, 299, 41 };
   for (double rate : { 0.2, 2.5 })
   {
     const auto volume = Read(Compress(FloatImage(dims), rate));
-    EXPECT(Reference(dims, Samples(dims), rate).Equals(volume->GetStream()), rate);
+    EXPECT_TRUE(Reference(dims, Samples(dims), rate).Equals(volume->GetStream())) << rate;
   }
 }
 
 //------------------------------------------------------------------------------
-void TestTypes()
+TEST(ImageZFPCompress, Types)
 {
   const Dims dims = { 6, 7, 5 };
   for (int type : { VTK_CHAR, VTK_SIGNED_CHAR, VTK_UNSIGNED_CHAR, VTK_SHORT, VTK_UNSIGNED_SHORT,
@@ -82,13 +84,13 @@ void TestTypes()
       values.push_back(static_cast<float>(array->GetComponent(i, 0)));
     }
     const auto volume = Read(Compress(Image(dims, array)));
-    EXPECT(Reference(dims, values, 8.0).Equals(volume->GetStream()), array->GetClassName());
-    EXPECT(volume->GetScalarType() == type, array->GetClassName());
+    EXPECT_TRUE(Reference(dims, values, 8.0).Equals(volume->GetStream())) << array->GetClassName();
+    EXPECT_TRUE(volume->GetScalarType() == type) << array->GetClassName();
   }
 }
 
 //------------------------------------------------------------------------------
-void TestComponentsAndChoice()
+TEST(ImageZFPCompress, ComponentsAndChoice)
 {
   const Dims dims = { 6, 7, 5 };
   const std::vector<float> values = Samples(dims, 2);
@@ -112,13 +114,13 @@ void TestComponentsAndChoice()
     compress->SetComponent(2);
     compress->Update();
     const auto volume = Read(compress->GetOutput());
-    EXPECT(Reference(dims, values, 8.0).Equals(volume->GetStream()), array->GetClassName());
-    EXPECT(volume->GetArrayName() == "velocity" && volume->GetComponent() == 2, "metadata");
+    EXPECT_TRUE(Reference(dims, values, 8.0).Equals(volume->GetStream())) << array->GetClassName();
+    EXPECT_TRUE(volume->GetArrayName() == "velocity" && volume->GetComponent() == 2) << "metadata";
   }
 }
 
 //------------------------------------------------------------------------------
-void TestOutput()
+TEST(ImageZFPCompress, Output)
 {
   const Dims dims = { 6, 7, 5 };
   const auto image = FloatImage(dims);
@@ -126,18 +128,20 @@ void TestOutput()
   field->SetName("patient");
   image->GetFieldData()->AddArray(field);
   const auto output = Compress(image);
-  EXPECT(SameGeometry(image, output), "geometry");
-  EXPECT(output->GetPointData()->GetNumberOfArrays() == 0, "point arrays");
-  EXPECT(output->GetCellData()->GetNumberOfArrays() == 0, "cell arrays");
-  EXPECT(output->GetFieldData()->HasArray("patient"), "field data is kept");
-  EXPECT(image->GetFieldData()->GetNumberOfArrays() == 1, "the input is untouched");
+  EXPECT_TRUE(SameGeometry(image, output)) << "geometry";
+  EXPECT_TRUE(output->GetPointData()->GetNumberOfArrays() == 0) << "point arrays";
+  EXPECT_TRUE(output->GetCellData()->GetNumberOfArrays() == 0) << "cell arrays";
+  EXPECT_TRUE(output->GetFieldData()->HasArray("patient")) << "field data is kept";
+  EXPECT_TRUE(image->GetFieldData()->GetNumberOfArrays() == 1) << "the input is untouched";
 
   const std::vector<float> values = Samples(dims);
   const auto volume = Read(output);
-  EXPECT(volume->GetRange()[0] == *std::min_element(values.begin(), values.end()), "minimum");
-  EXPECT(volume->GetRange()[1] == *std::max_element(values.begin(), values.end()), "maximum");
-  EXPECT(volume->GetArrayName() == "density", volume->GetArrayName());
-  EXPECT(volume->GetNumberOfBlocks() == 2 * 2 * 2, volume->GetNumberOfBlocks());
+  EXPECT_TRUE(volume->GetRange()[0] == *std::min_element(values.begin(), values.end()))
+    << "minimum";
+  EXPECT_TRUE(volume->GetRange()[1] == *std::max_element(values.begin(), values.end()))
+    << "maximum";
+  EXPECT_TRUE(volume->GetArrayName() == "density") << volume->GetArrayName();
+  EXPECT_TRUE(volume->GetNumberOfBlocks() == 2 * 2 * 2) << volume->GetNumberOfBlocks();
 }
 
 //------------------------------------------------------------------------------
@@ -149,11 +153,11 @@ void ExpectError(const std::string& words, vtkImageData* image, Prepare prepare)
   compress->SetInputData(image);
   prepare(compress.Get());
   compress->Update();
-  EXPECT(errors.IsOne(words), "expected '" << words << "', got " << errors.Describe());
-  EXPECT(!vtkCompressedVolume::IsCompressed(compress->GetOutput()), words);
+  EXPECT_TRUE(errors.IsOne(words)) << "expected '" << words << "', got " << errors.Describe();
+  EXPECT_FALSE(vtkCompressedVolume::IsCompressed(compress->GetOutput())) << words;
 }
 
-void TestErrors()
+TEST(ImageZFPCompress, Errors)
 {
   const auto nothing = [](vtkImageZFPCompress*) {};
   const auto image = FloatImage({ 6, 7, 5 });
@@ -179,7 +183,7 @@ void TestErrors()
 
 //------------------------------------------------------------------------------
 // zfp's encoder overflows for blocks below 2^-98: they become zero, unless that would be seen.
-void TestTinyValues()
+TEST(ImageZFPCompress, TinyValues)
 {
   const Dims dims = { 8, 4, 4 }; // two blocks
   std::vector<float> values(Product(dims));
@@ -190,19 +194,19 @@ void TestTinyValues()
   std::vector<float> zeroed = values;
   std::replace(zeroed.begin(), zeroed.end(), 1e-31f, 0.0f);
   const auto volume = Read(Compress(Image(dims, FloatArray(values))));
-  EXPECT(Reference(dims, zeroed, 8.0).Equals(volume->GetStream()), "tiny block");
-  EXPECT(volume->GetRange()[0] == 1e-31f, "the range is the original's");
+  EXPECT_TRUE(Reference(dims, zeroed, 8.0).Equals(volume->GetStream())) << "tiny block";
+  EXPECT_TRUE(volume->GetRange()[0] == 1e-31f) << "the range is the original's";
 
   std::replace(values.begin(), values.end(), 1.0f, 1e-25f);
   const auto scaled = Read(Compress(Image(dims, FloatArray(values))));
-  EXPECT(scaled->GetScale() == std::ldexp(1.0, -84) && scaled->GetOffset() == 0.0, "scale");
+  EXPECT_TRUE(scaled->GetScale() == std::ldexp(1.0, -84) && scaled->GetOffset() == 0.0) << "scale";
   std::replace(values.begin(), values.end(), 1e-31f, 4e-30f); // just large enough for zfp
   const auto small = Read(Compress(Image(dims, FloatArray(values))));
-  EXPECT(Reference(dims, values, 8.0).Equals(small->GetStream()), "small block");
+  EXPECT_TRUE(Reference(dims, values, 8.0).Equals(small->GetStream())) << "small block";
 }
 
 //------------------------------------------------------------------------------
-void TestPipeline()
+TEST(ImageZFPCompress, Pipeline)
 {
   int runs = 0;
   vtkNew<vtkCallbackCommand> count;
@@ -217,17 +221,17 @@ void TestPipeline()
   compress->Update();
   compress->SetRate(compress->GetRate());
   compress->Update();
-  EXPECT(runs == 1, "unchanged: " << runs);
+  EXPECT_TRUE(runs == 1) << "unchanged: " << runs;
   compress->SetRate(4.0);
   compress->Update();
-  EXPECT(runs == 2, "rate: " << runs);
+  EXPECT_TRUE(runs == 2) << "rate: " << runs;
   image->Modified();
   compress->Update();
-  EXPECT(runs == 3, "input: " << runs);
+  EXPECT_TRUE(runs == 3) << "input: " << runs;
 }
 
 //------------------------------------------------------------------------------
-void TestProgressAndAbort()
+TEST(ImageZFPCompress, ProgressAndAbort)
 {
   vtkNew<vtkCallbackCommand> watch;
   std::vector<double> seen;
@@ -242,18 +246,19 @@ void TestProgressAndAbort()
   compress->AddObserver(vtkCommand::ProgressEvent, watch);
   compress->SetInputData(FloatImage({ 301, 299, 41 }));
   compress->Update();
-  EXPECT(seen.size() > 3 && std::is_sorted(seen.begin(), seen.end()), seen.size() << " events");
+  EXPECT_TRUE(seen.size() > 3 && std::is_sorted(seen.begin(), seen.end()))
+    << seen.size() << " events";
 
   watch->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
     { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
   compress->SetRate(4.0);
   compress->Update();
-  EXPECT(!vtkCompressedVolume::IsCompressed(compress->GetOutput()), "aborted");
+  EXPECT_FALSE(vtkCompressedVolume::IsCompressed(compress->GetOutput())) << "aborted";
 }
 //------------------------------------------------------------------------------
 // Ghost marks of another number than there are cells or points, or in no order: nothing is read
 // beyond them, and extents stay in order.
-void TestOddMarks()
+TEST(ImageZFPCompress, OddMarks)
 {
   const auto marked = [](bool cells, vtkIdType number, std::initializer_list<vtkIdType> own)
   {
@@ -271,7 +276,7 @@ void TestOddMarks()
     const Errors errors(compress);
     compress->SetInputData(image);
     compress->Update();
-    EXPECT(errors.Texts.size() <= 1, errors.Describe());
+    EXPECT_TRUE(errors.Texts.size() <= 1) << errors.Describe();
     return vtkSmartPointer<vtkImageData>(compress->GetOutput());
   };
   vtkNew<vtkCompressedVolume> volume;
@@ -280,18 +285,18 @@ void TestOddMarks()
     const vtkIdType number = cells ? 6 * 7 * 5 : 5 * 6 * 4;
     for (const vtkIdType other : { vtkIdType(0), vtkIdType(1), number - 1, number + 1 })
     {
-      EXPECT(volume->Read(marked(cells, other, {})), volume->GetErrorMessage());
-      EXPECT(!volume->HidesAny(), "marks of " << other << " cells");
+      EXPECT_TRUE(volume->Read(marked(cells, other, {}))) << volume->GetErrorMessage();
+      EXPECT_FALSE(volume->HidesAny()) << "marks of " << other << " cells";
     }
     // the first own one lies further on in x and y than the last
     const vtkIdType row = cells ? 6 : 5;
-    EXPECT(volume->Read(marked(cells, number, { 3 + 3 * row, number - 3 * row })),
-      volume->GetErrorMessage());
+    EXPECT_TRUE(volume->Read(marked(cells, number, { 3 + 3 * row, number - 3 * row })))
+      << volume->GetErrorMessage();
   }
 }
 
 //------------------------------------------------------------------------------
-void TestLargestDoubles()
+TEST(ImageZFPCompress, LargestDoubles)
 {
   const double most = std::numeric_limits<double>::max();
   vtkNew<vtkDoubleArray> values;
@@ -302,24 +307,8 @@ void TestLargestDoubles()
     values->SetValue(7, most);
     const auto image = Compress(Image({ 4, 4, 4 }, values));
     vtkNew<vtkCompressedVolume> volume;
-    EXPECT(volume->Read(image), low << ": " << volume->GetErrorMessage());
-    EXPECT(volume->GetRange()[1] == most, volume->GetRange()[1]);
+    EXPECT_TRUE(volume->Read(image)) << low << ": " << volume->GetErrorMessage();
+    EXPECT_TRUE(volume->GetRange()[1] == most) << volume->GetRange()[1];
   }
 }
-}
-
-int main()
-{
-  TestRatesShapesThreads();
-  TestSteps();
-  TestTypes();
-  TestComponentsAndChoice();
-  TestOutput();
-  TestErrors();
-  TestTinyValues();
-  TestOddMarks();
-  TestLargestDoubles();
-  TestPipeline();
-  TestProgressAndAbort();
-  return test::Result();
 }

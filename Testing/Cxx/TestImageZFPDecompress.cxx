@@ -4,6 +4,8 @@
 // vtkImageZFPDecompress against libzfp, on compressed volumes as they come from filters and files.
 #include "CompressionTestTools.h"
 
+#include <gtest/gtest.h>
+
 #include <vtkFieldData.h>
 #include <vtkImageZFPDecompress.h>
 #include <vtkIntArray.h>
@@ -27,7 +29,7 @@ bool SameValues(vtkDataArray* array, const std::vector<float>& values)
 }
 
 //------------------------------------------------------------------------------
-void TestRoundTrips()
+TEST(ImageZFPDecompress, RoundTrips)
 {
   const Dims shapes[] = { { 2, 2, 2 }, { 5, 3, 7 }, { 9, 4, 6 }, { 64, 65, 63 }, { 301, 299, 9 } };
   bool cells = false;
@@ -44,15 +46,15 @@ void TestRoundTrips()
       vtkImageData* output = decompress->GetOutput();
       const Reference reference(dims, Samples(dims), rate);
       vtkDataArray* array = Scalars(output, cells);
-      EXPECT(SameValues(array, reference.Decoded), dims[0] << " wide at rate " << rate);
-      EXPECT(array && std::string(array->GetName()) == "density", "name");
-      EXPECT(SameGeometry(image, output), "geometry");
+      EXPECT_TRUE(SameValues(array, reference.Decoded)) << dims[0] << " wide at rate " << rate;
+      EXPECT_TRUE(array && std::string(array->GetName()) == "density") << "name";
+      EXPECT_TRUE(SameGeometry(image, output)) << "geometry";
     }
   }
 }
 
 //------------------------------------------------------------------------------
-void TestThroughVTI()
+TEST(ImageZFPDecompress, ThroughVTI)
 {
   const Dims dims = { 9, 4, 6 };
   const auto image = FloatImage(dims);
@@ -70,29 +72,23 @@ void TestThroughVTI()
   decompress->SetInputConnection(reader->GetOutputPort());
   decompress->Update();
   vtkImageData* output = decompress->GetOutput();
-  EXPECT(SameValues(Scalars(output, false), Reference(dims, Samples(dims), 2.7).Decoded), "values");
-  EXPECT(SameGeometry(image, output), "geometry");
-  EXPECT(output->GetFieldData()->GetNumberOfArrays() == 1, "only the original field data is left");
+  EXPECT_TRUE(SameValues(Scalars(output, false), Reference(dims, Samples(dims), 2.7).Decoded))
+    << "values";
+  EXPECT_TRUE(SameGeometry(image, output)) << "geometry";
+  EXPECT_TRUE(output->GetFieldData()->GetNumberOfArrays() == 1)
+    << "only the original field data is left";
 }
 
 //------------------------------------------------------------------------------
-void TestErrors()
+TEST(ImageZFPDecompress, Errors)
 {
   vtkNew<vtkImageZFPDecompress> decompress;
   const Errors errors(decompress);
   const auto image = FloatImage({ 4, 4, 4 });
   decompress->SetInputData(image);
   decompress->Update();
-  EXPECT(errors.IsOne("no field data array ProgIso.ZFP.Stream"), errors.Describe());
-  EXPECT(!decompress->GetOutput()->GetPointData()->GetScalars(), "no array");
-  EXPECT(SameGeometry(image, decompress->GetOutput()), "geometry");
+  EXPECT_TRUE(errors.IsOne("no field data array ProgIso.ZFP.Stream")) << errors.Describe();
+  EXPECT_FALSE(decompress->GetOutput()->GetPointData()->GetScalars()) << "no array";
+  EXPECT_TRUE(SameGeometry(image, decompress->GetOutput())) << "geometry";
 }
-}
-
-int main()
-{
-  TestRoundTrips();
-  TestThroughVTI();
-  TestErrors();
-  return test::Result();
 }

@@ -4,6 +4,8 @@
 // vtkZFPContour against vtkFlyingEdges3D on the decoded image: the same triangles in every bit.
 #include "CompressionTestTools.h"
 
+#include <gtest/gtest.h>
+
 #include <vtkCellArray.h>
 #include <vtkFieldData.h>
 #include <vtkFlyingEdges3D.h>
@@ -75,7 +77,7 @@ void SetValues(ContourT* contour, const std::vector<double>& values)
 }
 
 //------------------------------------------------------------------------------
-void TestEqualsFlyingEdges()
+TEST(ZFPContour, EqualsFlyingEdges)
 {
   const Dims shapes[] = { { 2, 2, 2 }, { 5, 9, 13 }, { 9, 2, 17 }, { 33, 10, 7 }, { 21, 22, 23 } };
   const std::vector<double> values = { 10.0, -100.25, 1e9, 10.0 };
@@ -95,17 +97,18 @@ void TestEqualsFlyingEdges()
       contour->SetBrickSize(brickSize);
       SetValues(contour.Get(), values);
       contour->Update();
-      EXPECT(contour->GetOutput()->GetNumberOfCells() > 0, dims[0] << " wide");
-      EXPECT(SameSurface(contour->GetOutput(), expected->GetOutput()),
-        dims[0] << " wide in bricks of " << brickSize);
-      EXPECT(contour->GetOutput()->GetFieldData()->GetNumberOfArrays() == 0, "no stream is left");
+      EXPECT_TRUE(contour->GetOutput()->GetNumberOfCells() > 0) << dims[0] << " wide";
+      EXPECT_TRUE(SameSurface(contour->GetOutput(), expected->GetOutput()))
+        << dims[0] << " wide in bricks of " << brickSize;
+      EXPECT_TRUE(contour->GetOutput()->GetFieldData()->GetNumberOfArrays() == 0)
+        << "no stream is left";
     }
   }
 }
 
 //------------------------------------------------------------------------------
 // Order and all, whatever threads there are and wherever they come from.
-void TestThreadsDoNotShow()
+TEST(ZFPContour, ThreadsDoNotShow)
 {
   const auto compressed = Compress(FloatImage({ 40, 41, 42 }));
   std::vector<vtkSmartPointer<vtkPolyData>> surfaces;
@@ -120,7 +123,7 @@ void TestThreadsDoNotShow()
       contour->SetNumberOfThreads(threads);
       contour->Update();
       surfaces.emplace_back(contour->GetOutput());
-      EXPECT(std::string(vtkSMPTools::GetBackend()) == backend, "the backend is as it was");
+      EXPECT_TRUE(std::string(vtkSMPTools::GetBackend()) == backend) << "the backend is as it was";
     }
   }
   for (const auto& surface : surfaces)
@@ -130,12 +133,12 @@ void TestThreadsDoNotShow()
     {
       same = BitsOfPoint(surface, point) == BitsOfPoint(surfaces[0], point);
     }
-    EXPECT(same, "another number of threads");
+    EXPECT_TRUE(same) << "another number of threads";
   }
 }
 
 //------------------------------------------------------------------------------
-void TestDecodesWhatItNeeds()
+TEST(ZFPContour, DecodesWhatItNeeds)
 {
   vtkNew<vtkFloatArray> ramp;
   for (int i = 0; i < 33 * 33 * 33; ++i)
@@ -148,23 +151,23 @@ void TestDecodesWhatItNeeds()
   contour->SetNumberOfThreads(1);
   contour->SetValue(0, 20.5);
   contour->Update();
-  EXPECT(contour->GetNumberOfBricks() == 64, contour->GetNumberOfBricks());
-  EXPECT(contour->GetNumberOfDecodedBricks() == 64, "ranges are not known at first");
+  EXPECT_TRUE(contour->GetNumberOfBricks() == 64) << contour->GetNumberOfBricks();
+  EXPECT_TRUE(contour->GetNumberOfDecodedBricks() == 64) << "ranges are not known at first";
   // 8 cells, a sample more, one on either side, in whole blocks: one brick at a time
-  EXPECT(contour->GetPeakSampleBytes() == 4 * 16 * 16 * 16, contour->GetPeakSampleBytes());
+  EXPECT_TRUE(contour->GetPeakSampleBytes() == 4 * 16 * 16 * 16) << contour->GetPeakSampleBytes();
   contour->SetValue(0, 10.5);
   contour->Update();
-  EXPECT(contour->GetNumberOfDecodedBricks() == 16, contour->GetNumberOfDecodedBricks());
+  EXPECT_TRUE(contour->GetNumberOfDecodedBricks() == 16) << contour->GetNumberOfDecodedBricks();
   contour->SetValue(0, 100.0);
   contour->Update();
-  EXPECT(contour->GetNumberOfDecodedBricks() == 0, contour->GetNumberOfDecodedBricks());
+  EXPECT_TRUE(contour->GetNumberOfDecodedBricks() == 0) << contour->GetNumberOfDecodedBricks();
   contour->SetInputData(Compress(FloatImage({ 33, 33, 33 })));
   contour->Update();
-  EXPECT(contour->GetNumberOfDecodedBricks() == 64, "another volume");
+  EXPECT_TRUE(contour->GetNumberOfDecodedBricks() == 64) << "another volume";
 }
 
 //------------------------------------------------------------------------------
-void TestAbort()
+TEST(ZFPContour, Abort)
 {
   vtkNew<vtkZFPContour> contour;
   contour->SetInputData(Compress(FloatImage({ 40, 40, 40 })));
@@ -175,37 +178,28 @@ void TestAbort()
     { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(true); });
   const auto tag = contour->AddObserver("ProgressEvent", abort);
   contour->Update();
-  EXPECT(contour->GetOutput()->GetNumberOfPoints() == 0, "aborted");
-  EXPECT(contour->GetNumberOfDecodedBricks() < contour->GetNumberOfBricks(), "stopped early");
+  EXPECT_TRUE(contour->GetOutput()->GetNumberOfPoints() == 0) << "aborted";
+  EXPECT_TRUE(contour->GetNumberOfDecodedBricks() < contour->GetNumberOfBricks())
+    << "stopped early";
   contour->RemoveObserver(tag);
   contour->SetAbortExecute(false);
   contour->Update();
-  EXPECT(contour->GetOutput()->GetNumberOfPoints() > 0, "taken up again");
+  EXPECT_TRUE(contour->GetOutput()->GetNumberOfPoints() > 0) << "taken up again";
 }
 
 //------------------------------------------------------------------------------
-void TestErrors()
+TEST(ZFPContour, Errors)
 {
   vtkNew<vtkZFPContour> contour;
   Errors errors(contour);
   contour->SetInputData(FloatImage({ 4, 4, 4 }));
   contour->Update();
-  EXPECT(errors.IsOne("ProgIso.ZFP.Stream (compress it first)"), errors.Describe());
-  EXPECT(contour->GetOutput()->GetNumberOfPoints() == 0, "empty");
+  EXPECT_TRUE(errors.IsOne("ProgIso.ZFP.Stream (compress it first)")) << errors.Describe();
+  EXPECT_TRUE(contour->GetOutput()->GetNumberOfPoints() == 0) << "empty";
   errors.Texts.clear();
   contour->SetInputData(Compress(FloatImage({ 4, 4, 4 })));
   contour->SetValue(0, std::numeric_limits<double>::quiet_NaN());
   contour->Update();
-  EXPECT(errors.IsOne("must be finite"), errors.Describe());
+  EXPECT_TRUE(errors.IsOne("must be finite")) << errors.Describe();
 }
-}
-
-int main()
-{
-  TestEqualsFlyingEdges();
-  TestThreadsDoNotShow();
-  TestDecodesWhatItNeeds();
-  TestAbort();
-  TestErrors();
-  return test::Result();
 }

@@ -5,6 +5,8 @@
 // and damaged.
 #include "CompressionTestTools.h"
 
+#include <gtest/gtest.h>
+
 #include <vtkInformation.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkZFPReader.h>
@@ -55,7 +57,7 @@ std::string MakeFixedRateFile(bool header, double rate)
 }
 
 //------------------------------------------------------------------------------
-void TestStreams()
+TEST(ZFPReader, Streams)
 {
   for (double rate : { 0.01, 1.03, 2.5, 8.0, 31.99, 32.0 })
   {
@@ -75,20 +77,22 @@ void TestStreams()
       reader->UpdateInformation();
       const int* extent =
         reader->GetOutputInformation(0)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
-      EXPECT(extent[1] == 32 && extent[3] == 8 && extent[5] == 5, "whole extent before reading");
+      EXPECT_TRUE(extent[1] == 32 && extent[3] == 8 && extent[5] == 5)
+        << "whole extent before reading";
       reader->Update();
-      EXPECT(errors.Texts.empty(), errors.Describe());
+      EXPECT_TRUE(errors.Texts.empty()) << errors.Describe();
 
       const Reference reference(Size, Samples(Size), rate);
       vtkNew<vtkCompressedVolume> volume;
-      EXPECT(volume->Read(reader->GetOutput()), volume->GetErrorMessage());
-      EXPECT(reference.Equals(volume->GetStream()), "rate " << rate << ", header " << header);
+      EXPECT_TRUE(volume->Read(reader->GetOutput())) << volume->GetErrorMessage();
+      EXPECT_TRUE(reference.Equals(volume->GetStream()))
+        << "rate " << rate << ", header " << header;
       const auto range = std::minmax_element(reference.Decoded.begin(), reference.Decoded.end());
-      EXPECT(volume->GetRange()[0] == *range.first, volume->GetRange()[0]);
-      EXPECT(volume->GetRange()[1] == *range.second, volume->GetRange()[1]);
-      EXPECT(reader->GetOutput()->GetSpacing()[2] == 0.5, "spacing");
-      EXPECT(reader->GetOutput()->GetOrigin()[2] == 7.0, "origin");
-      EXPECT(reader->CanReadFile(FileName) == header, "CanReadFile");
+      EXPECT_TRUE(volume->GetRange()[0] == *range.first) << volume->GetRange()[0];
+      EXPECT_TRUE(volume->GetRange()[1] == *range.second) << volume->GetRange()[1];
+      EXPECT_TRUE(reader->GetOutput()->GetSpacing()[2] == 0.5) << "spacing";
+      EXPECT_TRUE(reader->GetOutput()->GetOrigin()[2] == 7.0) << "origin";
+      EXPECT_TRUE(reader->CanReadFile(FileName) == header) << "CanReadFile";
     }
   }
 }
@@ -103,11 +107,11 @@ void ExpectError(const std::string& bytes, const std::string& words, const Dims&
   reader->SetDataDimensions(dims.data());
   reader->Update();
   reader->Update();
-  EXPECT(errors.IsOne(words), "expected '" << words << "', got " << errors.Describe());
-  EXPECT(reader->GetOutput()->GetNumberOfPoints() == 0, words);
+  EXPECT_TRUE(errors.IsOne(words)) << "expected '" << words << "', got " << errors.Describe();
+  EXPECT_TRUE(reader->GetOutput()->GetNumberOfPoints() == 0) << words;
 }
 
-void TestErrors()
+TEST(ZFPReader, Errors)
 {
   const auto rate8 = [](zfp_stream* zfp) { zfp_stream_set_rate(zfp, 8, zfp_type_float, 3, 0); };
   const auto expert = [](zfp_stream* zfp) { zfp_stream_set_params(zfp, 100, 600, 32, -1074); };
@@ -140,13 +144,6 @@ void TestErrors()
   const Errors errors(reader);
   reader->SetFileName("no such file.zfp");
   reader->Update();
-  EXPECT(errors.IsOne("cannot be opened"), errors.Describe());
+  EXPECT_TRUE(errors.IsOne("cannot be opened")) << errors.Describe();
 }
-}
-
-int main()
-{
-  TestStreams();
-  TestErrors();
-  return test::Result();
 }

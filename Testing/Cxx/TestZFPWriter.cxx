@@ -4,6 +4,8 @@
 // vtkZFPWriter against libzfp's own way of writing: header, then the field, in one bit stream.
 #include "CompressionTestTools.h"
 
+#include <gtest/gtest.h>
+
 #include <vtkZFPWriter.h>
 
 #include <fstream>
@@ -39,7 +41,7 @@ std::string Expected(const Dims& dims, std::vector<float> values, double rate, b
 }
 
 //------------------------------------------------------------------------------
-void TestFiles()
+TEST(ZFPWriter, Files)
 {
   const char* const fileName = "TestZFPWriter.zfp";
   const Dims shapes[] = { { 2, 2, 2 }, { 9, 4, 6 }, { 33, 65, 31 } };
@@ -53,9 +55,9 @@ void TestFiles()
         writer->SetFileName(fileName);
         writer->SetInputData(Compress(FloatImage(dims), rate));
         writer->SetWriteHeader(header);
-        EXPECT(writer->Write() == 1, "written");
-        EXPECT(Contents(fileName) == Expected(dims, Samples(dims), rate, header),
-          dims[0] << " wide at rate " << rate << (header ? " with" : " without") << " header");
+        EXPECT_TRUE(writer->Write() == 1) << "written";
+        EXPECT_TRUE(Contents(fileName) == Expected(dims, Samples(dims), rate, header))
+          << dims[0] << " wide at rate " << rate << (header ? " with" : " without") << " header";
       }
     }
   }
@@ -68,25 +70,18 @@ void ExpectError(vtkImageData* image, const char* fileName, const std::string& w
   const Errors errors(writer);
   writer->SetInputData(image);
   writer->SetFileName(fileName);
-  EXPECT(writer->Write() == 0, words);
-  EXPECT(errors.IsOne(words), "expected '" << words << "', got " << errors.Describe());
+  EXPECT_TRUE(writer->Write() == 0) << words;
+  EXPECT_TRUE(errors.IsOne(words)) << "expected '" << words << "', got " << errors.Describe();
 }
 
-void TestErrors()
+TEST(ZFPWriter, Errors)
 {
   const auto plain = FloatImage({ 4, 4, 4 });
   ExpectError(plain, "TestZFPWriterPlain.zfp", "not a valid compressed volume");
-  EXPECT(!std::ifstream("TestZFPWriterPlain.zfp"), "no file is made");
+  EXPECT_FALSE(std::ifstream("TestZFPWriterPlain.zfp")) << "no file is made";
   const auto compressed = Compress(plain);
   ExpectError(compressed, nullptr, "FileName");
   ExpectError(compressed, "no such folder/a.zfp", "Cannot open");
   ExpectError(Compress(FloatImage({ 2, 65537, 2 })), "TestZFPWriterLong.zfp", "65536");
 }
-}
-
-int main()
-{
-  TestFiles();
-  TestErrors();
-  return test::Result();
 }

@@ -106,7 +106,7 @@ void CheckDecoding(const int dims[3], int blockBits, Bytes& bytes)
 }
 
 //------------------------------------------------------------------------------
-// Finite samples; blocks of tiny ones (see vtkZFPBlocks::Encode()) become zero as ours do.
+// Finite samples; blocks of tiny ones (see SampleEncoder) become zero as ours do.
 std::vector<float> MakeSamples(const int dims[3], Bytes& bytes)
 {
   std::vector<float> samples(static_cast<std::size_t>(dims[0]) * dims[1] * dims[2]);

@@ -5,6 +5,8 @@
 // as the image that is made at once.
 #include "CompressionTestTools.h"
 
+#include <gtest/gtest.h>
+
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
 #include <vtkContourValues.h>
@@ -59,11 +61,8 @@ std::vector<float> Depths(vtkProgressiveIsosurfaceMapper* mapper)
 }
 }
 
-int main(int argc, char* argv[])
+TEST(QtWidget, RefinesByEventLoop)
 {
-  QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
-  QApplication application(argc, argv);
-
   vtkNew<vtkRTAnalyticSource> source;
   source->SetWholeExtent(-32, 32, -32, 32, -32, 32);
   vtkNew<vtkProgressiveIsosurfaceMapper> mapper;
@@ -100,7 +99,7 @@ int main(int argc, char* argv[])
       ++watch.Turns;
       if (!watch.Completed.empty() && watch.Completed.back() == 1.0)
       {
-        application.quit();
+        QApplication::quit();
       }
     });
   turns.start(0);
@@ -108,9 +107,9 @@ int main(int argc, char* argv[])
   {
     watch = Watch();
     window->Render();
-    application.exec();
+    QApplication::exec();
   };
-  QTimer::singleShot(PATIENCE, &application, &QApplication::quit);
+  QTimer::singleShot(PATIENCE, qApp, &QApplication::quit);
   widget.show();
   for (int i = 0; i < FIRST_IMAGES; ++i)
   {
@@ -121,24 +120,31 @@ int main(int argc, char* argv[])
   untilComplete();
 
   const std::vector<double>& completed = watch.Completed;
-  EXPECT(completed.size() > 3, completed.size() << " images");
-  EXPECT(std::is_sorted(completed.begin(), completed.end()), "an image lost what it had");
-  EXPECT(mapper->GetConverged(), "not complete");
-  EXPECT(
-    watch.Turns > watch.TurnsAtFirst + 1, "other events had to wait until the image was there");
+  EXPECT_TRUE(completed.size() > 3) << completed.size() << " images";
+  EXPECT_TRUE(std::is_sorted(completed.begin(), completed.end())) << "an image lost what it had";
+  EXPECT_TRUE(mapper->GetConverged()) << "not complete";
+  EXPECT_TRUE(watch.Turns > watch.TurnsAtFirst + 1)
+    << "other events had to wait until the image was there";
   const std::vector<float> refined = Depths(mapper);
-  EXPECT(std::count_if(
-           refined.begin(), refined.end(), [](float depth) { return std::isfinite(depth); }) > 1000,
-    "hardly anything to see");
+  EXPECT_TRUE(std::count_if(refined.begin(), refined.end(),
+                [](float depth) { return std::isfinite(depth); }) > 1000)
+    << "hardly anything to see";
 
   // the same at once, as a window makes it that nobody watches
   window->SwapBuffersOff();
   mapper->EmptyCache();
   const std::size_t images = completed.size();
   window->Render();
-  EXPECT(watch.Completed.size() > images && watch.Completed[images] == 1.0,
-    watch.Completed.size() - images << " images, the first of them " << watch.Completed.back());
-  EXPECT(Depths(mapper) == refined, "another image");
-  EXPECT(mapper->GetNumberOfGLErrors() == 0, "OpenGL errors");
-  return test::Failures;
+  EXPECT_TRUE(watch.Completed.size() > images && watch.Completed[images] == 1.0)
+    << watch.Completed.size() - images << " images, the first of them " << watch.Completed.back();
+  EXPECT_TRUE(Depths(mapper) == refined) << "another image";
+  EXPECT_TRUE(mapper->GetNumberOfGLErrors() == 0) << "OpenGL errors";
+}
+
+int main(int argc, char* argv[])
+{
+  QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
+  QApplication application(argc, argv);
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
 }
