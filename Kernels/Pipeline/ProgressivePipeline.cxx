@@ -58,8 +58,9 @@ Status ProgressivePipeline::Initialize(std::uint64_t contextId)
     return made;
   }
   ControlBlock control = {};
-  for (DispatchArguments* groups : { &control.CastGroups, &control.FewGroups, &control.NormalGroups,
-         &control.RequestGroups, &control.DecodeGroups, &control.EvictGroups })
+  for (DispatchArguments* groups :
+    { &control.CastGroups, &control.StragglerGroups, &control.FinishGroups, &control.RequestGroups,
+      &control.DecodeGroups, &control.EvictGroups })
   {
     *groups = { 0, 1, 1, 0 };
   }
@@ -362,7 +363,7 @@ void ProgressivePipeline::RunPass()
   this->RunStage(Stage::CacheAges);
   this->RunStage(Stage::CacheEvict);
   this->RunStage(Stage::CastRays);
-  this->RunStage(Stage::CastFewRays);
+  this->RunStage(Stage::CastStragglers);
   this->RunStage(Stage::FinishHits);
   this->RunStage(Stage::RequestBlocks);
   this->RunStage(Stage::DecodeBlocks);

@@ -95,16 +95,17 @@ struct DispatchArguments
 
 struct ControlBlock
 {
-  std::uint32_t Rays, Carried, NextCarried, List;
-  std::uint32_t Fresh, Frontier, Window, FirstLive;
-  std::uint32_t Unlit, NextUnlit, PassSerial, ImageSerial;
+  std::uint32_t Rays, WaitingRays, NextWaitingRays, Queue;
+  std::uint32_t FirstNewRay, Frontier, Window, FirstLive;
+  std::uint32_t PendingHits, PostponedHits, PassSerial, ImageSerial;
   std::uint32_t PassIndex, NewImage, ActiveRays, Pairs;
-  std::uint32_t Requests, Refused, VisibleBlocks, ActiveBlocks;
+  std::uint32_t Requests, DeniedRequests, VisibleBlocks, ActiveBlocks;
   std::uint32_t TouchedSlots, FreeSlotsBegin, FreeSlots, ReturnedSlots;
   std::uint32_t FreePagesBegin, FreePages, TakenPages, EvictWanted;
-  std::uint32_t EvictByPages, Evicted, RefusedBefore, Again;
-  std::uint32_t GoingOn, Pad[3];
-  DispatchArguments CastGroups, FewGroups, NormalGroups, RequestGroups, DecodeGroups, EvictGroups;
+  std::uint32_t EvictByPages, Evicted, DeniedRequestsBefore, ContinuingRays;
+  std::uint32_t NextContinuingRays, Pad[3];
+  DispatchArguments CastGroups, StragglerGroups, FinishGroups;
+  DispatchArguments RequestGroups, DecodeGroups, EvictGroups;
   std::uint32_t Ages[256];
 };
 

@@ -19,7 +19,7 @@ enum class Stage
   CacheAges,
   CacheEvict,
   CastRays,
-  CastFewRays,
+  CastStragglers,
   FinishHits,
   RequestBlocks,
   DecodeBlocks,

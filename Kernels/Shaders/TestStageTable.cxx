@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -133,6 +134,35 @@ bool NeedsMoreThan(const StageInfo& stage, Buffer buffer, const char* qualifier)
     });
 }
 
+// What a stage defines for the files that it includes.
+std::string DefinitionsOf(const StageInfo& stage)
+{
+  std::istringstream text(ShaderSources().at(stage.File));
+  std::string line, definitions;
+  while (std::getline(text, line) && line.compare(0, 8, "#include") != 0)
+  {
+    definitions += line.compare(0, 7, "#define") == 0 ? line + "\n" : "";
+  }
+  return definitions;
+}
+
+// Does a file that the stage includes compile without what else it includes, in some scene?
+bool CompilesAlone(const StageInfo& stage, const std::string& file)
+{
+  const std::vector<PipelineExtent> extents = Extents();
+  return std::any_of(extents.begin(), extents.end(),
+    [&](const PipelineExtent& extent)
+    {
+      const std::vector<ShaderSection> sections = Assemble(stage, extent).Sections;
+      const bool included = std::any_of(sections.begin(), sections.end(),
+        [&file](const ShaderSection& section) { return section.File == file; });
+      AssembledShader shader =
+        AssembleShader(stage, file, BoundBuffers(stage, extent), extent, false);
+      shader.Text.insert(shader.Text.find('\n') + 1, DefinitionsOf(stage));
+      return included && Compile(stage, shader).empty();
+    });
+}
+
 class Shaders : public testing::Test
 {
 protected:
@@ -197,6 +227,21 @@ TEST_F(Shaders, NeedAllTheAccessOfTheTable)
         << stage.Name << " does not read " << name;
       EXPECT_TRUE(!Writes(use.How) || NeedsMoreThan(stage, use.Id, "readonly "))
         << stage.Name << " does not write " << name;
+    }
+  }
+}
+
+TEST_F(Shaders, FilesIncludeWhatTheyUse)
+{
+  for (const auto& source : ShaderSources())
+  {
+    const std::string& file = source.first;
+    if (file.substr(file.find('.')) == ".glsl")
+    {
+      const auto& stages = PipelineStages();
+      EXPECT_TRUE(std::any_of(stages.begin(), stages.end(),
+        [&file](const StageInfo& stage) { return CompilesAlone(stage, file); }))
+        << file;
     }
   }
 }

@@ -1,5 +1,4 @@
 // First step of eviction: counts how much of the cache has not been used for how many passes.
-// In: CacheMap. Out: Control (Ages).
 
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"

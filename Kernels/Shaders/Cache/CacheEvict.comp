@@ -1,6 +1,5 @@
 // Second step of eviction: frees the blocks of the pages that were not used for longest. Those of
 // age 0 stay: the last pass used them, and what it decoded is for the next.
-// In: Control (Ages, EvictWanted). Out: CacheMap, Macrocells, CacheFreeSlots, Control.
 
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"

@@ -1,5 +1,4 @@
 // Empties the cache.
-// Out: Macrocells, CacheMap, CacheFreeSlots, Control.
 
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"

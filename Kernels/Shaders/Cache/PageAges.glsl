@@ -1,5 +1,7 @@
 // What eviction knows of a page of the block map that is in use.
 
+#include "Shared/Buffers.glsl"
+
 // Passes since the page was used last; beyond the largest age they are not told apart.
 uint AgeOf(uint page)
 {

@@ -1,14 +1,17 @@
-// Asking for blocks that are not in the cache (section 3.4). The first to ask for one in a pass lists it; a bit a block
-// tells. A work group's requests go to the list together, and DecodeBlocks.comp fills them.
+// Asks for blocks that are not in the cache. The first to ask for one in a pass lists it; a bit a
+// block tells. A work group's requests go to the list together, and DecodeBlocks.comp fills them.
 
-#define LISTED 256u
+#include "Shared/Scene.glsl"
+#include "Shared/Buffers.glsl"
+#include "Shared/Grid.glsl"
+#include "Shared/GroupAppend.glsl"
 
-shared uint listed[LISTED];
-shared uint listedCount;
-shared uint listedBegin;
+#define MAX_GROUP_REQUESTS 256u // that go together; what a group has beyond goes by itself
 
-// A free page of the map for a macrocell; NONE where there is none.
-uint TakePage(uint cell)
+shared uint groupRequests[MAX_GROUP_REQUESTS];
+
+// A free page of the map for a macrocell; NONE if there is none.
+uint TakePage(uint macrocell)
 {
   uint at = atomicAdd(control.TakenPages, 1u);
   if (at >= control.FreePages)
@@ -16,22 +19,23 @@ uint TakePage(uint cell)
     return NONE;
   }
   uint page = mapPages[(control.FreePagesBegin + at) % cache.MapPages].Free;
-  mapPages[page].Cell = cell;
+  mapPages[page].Cell = macrocell;
   mapPages[page].Stamp = control.PassSerial;
   mapPages[page].Used = 0u;
   return page;
 }
 
-// Takes places on the list of requests, and makes DecodeBlocks.comp have an invocation for each.
+// Takes places in the list of requests, and makes DecodeBlocks.comp have an invocation for each.
 uint ReserveRequests(uint count)
 {
   uint at = atomicAdd(control.Requests, count);
-  atomicMax(control.DecodeGroups.X, min((at + count + DECODE_BLOCKS_GROUP_SIZE - 1u) / DECODE_BLOCKS_GROUP_SIZE, MAX_GROUPS));
+  atomicMax(
+    control.DecodeGroups.X, min(GroupsOf(at + count, DECODE_BLOCKS_GROUP_SIZE), MAX_GROUPS));
   return at;
 }
 
-// What is behind the end of the list is refused, and may be asked for again.
-void ListRequest(uint at, uint block)
+// Stores a request, or denies it if the list is full: it may be asked for again.
+void StoreRequest(uint at, uint block)
 {
   if (at < cache.Slots)
   {
@@ -40,55 +44,59 @@ void ListRequest(uint at, uint block)
   }
   ivec3 coordinates = BlockCoordinates(block);
   uint local = LocalIndex(coordinates);
-  atomicAnd(macrocells[MacrocellIndex(coordinates >> 2)].Requested[local >> 5], ~(1u << (local & 31u)));
+  uint macrocell = MacrocellIndex(MacrocellOf(coordinates));
+  atomicAnd(macrocells[macrocell].Requested[local >> 5], ~(1u << (local & 31u)));
 }
 
 // Call first, with a barrier before any request.
 void OpenRequests()
 {
-  if (gl_LocalInvocationIndex == 0u)
-  {
-    listedCount = 0u;
-  }
+  OpenGroupList(REQUESTS);
+}
+
+// True for the first that asks in this pass.
+bool IsFirstRequest(uint macrocell, uint local)
+{
+  uint bit = 1u << (local & 31u);
+  return (macrocells[macrocell].Requested[local >> 5] & bit) == 0u &&
+    (atomicOr(macrocells[macrocell].Requested[local >> 5], bit) & bit) == 0u;
 }
 
 // Asks for a block, unless another has already done so in this pass.
 void RequestBlock(ivec3 block)
 {
-  uint cell = MacrocellIndex(block >> 2);
-  uint local = LocalIndex(block);
-  uint bit = 1u << (local & 31u);
-  if ((macrocells[cell].Requested[local >> 5] & bit) != 0u ||
-    (atomicOr(macrocells[cell].Requested[local >> 5], bit) & bit) != 0u)
+  uint macrocell = MacrocellIndex(MacrocellOf(block));
+  if (!IsFirstRequest(macrocell, LocalIndex(block)))
   {
     return;
   }
-  if (macrocells[cell].Page == NONE && atomicCompSwap(macrocells[cell].Page, NONE, CLAIMED) == NONE)
+  if (macrocells[macrocell].Page == NONE &&
+    atomicCompSwap(macrocells[macrocell].Page, NONE, CLAIMED) == NONE)
   {
-    macrocells[cell].Page = TakePage(cell);
+    macrocells[macrocell].Page = TakePage(macrocell);
   }
-  uint at = atomicAdd(listedCount, 1u);
-  if (at < LISTED)
+  uint place = AddToGroupList(REQUESTS);
+  if (place < MAX_GROUP_REQUESTS)
   {
-    listed[at] = BlockIndex(block);
+    groupRequests[place] = BlockIndex(block);
   }
   else
   {
-    ListRequest(ReserveRequests(1u), BlockIndex(block));
+    StoreRequest(ReserveRequests(1u), BlockIndex(block));
   }
 }
 
 void CloseRequests()
 {
   barrier();
-  uint count = min(listedCount, LISTED);
-  if (gl_LocalInvocationIndex == 0u && count > 0u)
+  uint count = min(GroupListCount(REQUESTS), MAX_GROUP_REQUESTS);
+  if (ReservesFor(REQUESTS))
   {
-    listedBegin = ReserveRequests(count);
+    SetGroupListBegin(REQUESTS, ReserveRequests(count));
   }
   barrier();
   for (uint i = gl_LocalInvocationIndex; i < count; i += GROUP_SIZE)
   {
-    ListRequest(listedBegin + i, listed[i]);
+    StoreRequest(GroupListBegin(REQUESTS) + i, groupRequests[i]);
   }
 }

@@ -1,5 +1,7 @@
 // The hits of a translucent image, blended front to back.
 
+#include "Shared/Buffers.glsl"
+
 #define OPAQUE_ENOUGH 0.998 // what lies behind changes no colour of 8 bits
 
 // The sum of what is blended so far: colour times opacity, and opacity.

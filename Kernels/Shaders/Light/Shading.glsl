@@ -1,5 +1,9 @@
 // Lights a surface by Phong's model, in view coordinates.
 
+#include "Shared/Scene.glsl"
+#include "Rays/Rays.glsl"
+#include "Surface/Hits.glsl"
+
 #ifdef COLORED
 #include "Light/Palette.glsl.h"
 

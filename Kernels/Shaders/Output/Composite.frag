@@ -1,9 +1,9 @@
 // Draws the image, partial or complete, lit, into the window with its depths.
-// In: Hits, Normals or Layers.
 
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
 #include "Rays/Rays.glsl"
+#include "Surface/Hits.glsl"
 #include "Output/WindowDepth.glsl"
 #ifdef TRANSLUCENT
 #include "Light/Layers.glsl"

@@ -1,9 +1,9 @@
 // Draws for a vtkHardwareSelector: identifiers of the prop or of the cells that were hit.
-// In: Hits.
 
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
 #include "Rays/Rays.glsl"
+#include "Surface/Hits.glsl"
 #include "Output/WindowDepth.glsl"
 
 uniform vec4 selected; // the prop's identifier as a colour; w: which 24 bits of a cell's, 0: the prop's

@@ -1,5 +1,7 @@
 // The fragment's pixel in the image, and its depth in the window.
 
+#include "Shared/Scene.glsl"
+
 uint FragmentPixel()
 {
   ivec2 xy = ivec2(gl_FragCoord.xy) - view.ImageOrigin;

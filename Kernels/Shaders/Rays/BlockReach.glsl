@@ -1,3 +1,6 @@
+#include "Shared/Scene.glsl"
+#include "Rays/Rays.glsl"
+
 // Finds the neighbours whose samples a ray needs to pass through a block: the last cells on an axis
 // have their far corners in the next block. Returns 1 on each axis on which the ray passes through
 // such cells between parameters t0 and t1, else 0.

@@ -1,41 +1,38 @@
-// A pass over the wavefront of rays (sections 3.2, 3.3 and 3.7): every ray walks the macrocell grid to the blocks whose
-// range holds the isovalue, in their order along the ray, and is intersected with them as long as they are in the cache.
-// At the first that is not it waits for the next pass. So a ray tests no block behind its hit, and the first hit it
-// finds is the nearest.
-// In: Macrocells, CacheMap, CacheValues, Rays. Out: Hits, Rays, CacheMap (stamps), Control.
+// Casts the rays of a pass. Each walks the macrocell grid to the blocks whose range of values holds
+// an isovalue, in their order along the ray, and is intersected with those that are in the cache.
+// At the first that is not it waits for the next pass. So a ray tests no block behind its hit, and
+// the first hit that it finds is the nearest.
 
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
-#include "Rays/Rays.glsl"
 #include "Shared/Grid.glsl"
-#include "Rays/TraverseGrid.glsl"
-#include "Cache/BlockMap.glsl"
-#include "Surface/Intersection.glsl"
-#include "Rays/BlockReach.glsl"
-#include "Surface/IntersectBlock.glsl"
+#include "Shared/GroupAppend.glsl"
 #include "Rays/RayQueues.glsl"
+#include "Rays/Rays.glsl"
+#include "Rays/TraverseGrid.glsl"
+#include "Rays/VisitBlock.glsl"
+#include "Rays/WorkCounters.glsl"
+#include "Surface/Hits.glsl"
 
-// Walks from `block` to the first hit; true where the ray has to wait for the block that it returns.
+// What becomes of a ray in this pass.
+#define DONE 0u  // it has left the volume, or needs nothing more
+#define WAITS 1u // for blocks
+#define HIT 2u
+
+// Walks from `block` to the first hit. Returns true if the ray has to wait for the block that it
+// has come to.
 bool FindHit(Ray ray, inout ivec3 block, out Hit hit)
 {
   hit = MISS;
   GridCursor at = OutsideGrid();
   while (FindActiveBlock(ray, block, at))
   {
-    double entry = BlockEntry(ray, block);
-    double end = BlockExit(ray, block);
-    ivec3 reach = DualGridReach(ray, block, entry, end);
-    if (FindSlots(block, reach) != 0u)
+    BlockVisit visit = PlanVisit(ray, block);
+    if (LacksBlocks(block, visit))
     {
       return true;
     }
-    UseBlocks(block, reach);
-    ++pairs;
-    if (IntersectBlock(ray, block, entry, end, hit))
-    {
-      return false;
-    }
-    if (!NextBlock(ray, block))
+    if (VisitBlock(ray, block, visit, hit) || !NextBlock(ray, block))
     {
       return false;
     }
@@ -43,93 +40,72 @@ bool FindHit(Ray ray, inout ivec3 block, out Hit hit)
   return false;
 }
 
-#define DONE 0u  // has left the volume, or needs nothing more
-#define WAITS 1u // for blocks
-#define HIT 2u   // has hit the surface in this pass
-
-uint CastRay(uint pixel, bool fresh)
+uint CastRay(uint pixel, bool isNew)
 {
   Ray ray = CameraRay(pixel);
   if (!(ray.Enter <= ray.Leave))
   {
     return DONE;
   }
-  atomicAdd(groupActive, 1u);
-#ifdef HAS_RAYS
-  ivec3 block = fresh ? FirstBlock(ray) : BlockCoordinates(rays[pixel]);
-#else
-  ivec3 block = FirstBlock(ray);
-#endif
-#ifdef TRANSLUCENT
-  passed = HitOf(pixel);
-#endif
+  atomicAdd(groupActiveRays, 1u);
+  ivec3 block = isNew ? FirstBlock(ray) : BlockCoordinates(BlockOfRay(pixel));
+  PassLastHit(pixel);
   Hit hit;
   bool waits = FindHit(ray, block, hit);
-  bool struck = hit.Key != NO_HIT;
-  if (struck)
+  bool isHit = hit.Key != NO_HIT;
+  if (isHit)
   {
     StoreHit(pixel, hit, float(HitT(ray, hit.Key)));
   }
-#ifdef TRANSLUCENT
-  bool goesOn = waits || struck;
-#else
-  bool goesOn = waits;
-#endif
-#ifdef HAS_RAYS
-  if (goesOn)
+  if (waits || (isHit && RAYS_CONTINUE))
   {
-    rays[pixel] = BlockIndex(block);
+    StoreBlockOfRay(pixel, BlockIndex(block));
   }
-#endif
-  return waits ? WAITS : struck ? HIT : DONE;
+  return waits ? WAITS : isHit ? HIT : DONE;
 }
 
 #ifdef HAS_RAYS
-shared uint groupLive;
-shared uint groupLiveBegin;
-shared uint groupFirst;
-shared uint groupHits;
-shared uint groupHitsBegin;
+shared uint groupFirstLive; // least tile order of the rays that wait
 
-// The work group's rays that wait go to the list for the next pass together, and so do its hits, for their normals.
-void KeepRays(uint state, uint pixel)
+// Queues the work group's rays that wait for the next pass, and its hits to be finished.
+void QueueRays(uint state, uint pixel)
 {
+  OpenGroupList(NEXT_RAYS);
+  OpenGroupList(HITS);
   if (gl_LocalInvocationIndex == 0u)
   {
-    groupLive = 0u;
-    groupHits = 0u;
-    groupFirst = NONE;
+    groupFirstLive = NONE;
   }
   barrier();
-  uint at = 0u;
+  uint place = 0u;
   if (state == WAITS)
   {
-    at = atomicAdd(groupLive, 1u);
-    atomicMin(groupFirst, TileOrderOf(pixel));
+    place = AddToGroupList(NEXT_RAYS);
+    atomicMin(groupFirstLive, TileOrderOf(pixel));
   }
-#ifdef HIT_LIST
-  at = state == HIT ? atomicAdd(groupHits, 1u) : at;
+#ifdef HAS_PENDING_HITS
+  place = state == HIT ? AddToGroupList(HITS) : place;
 #endif
   barrier();
-  if (gl_LocalInvocationIndex == 0u && groupLive > 0u)
+  if (ReservesFor(NEXT_RAYS))
   {
-    groupLiveBegin = ReserveRays(groupLive, groupFirst);
+    SetGroupListBegin(NEXT_RAYS, ReserveNextRays(GroupListCount(NEXT_RAYS), groupFirstLive));
   }
-#ifdef HIT_LIST
-  if (gl_LocalInvocationIndex == 0u && groupHits > 0u)
+#ifdef HAS_PENDING_HITS
+  if (ReservesFor(HITS))
   {
-    groupHitsBegin = ReserveUnlit(groupHits);
+    SetGroupListBegin(HITS, ReservePendingHits(GroupListCount(HITS)));
   }
 #endif
   barrier();
   if (state == WAITS)
   {
-    rays[NextList(groupLiveBegin + at)] = pixel;
+    StoreNextRay(GroupListBegin(NEXT_RAYS) + place, pixel);
   }
-#ifdef HIT_LIST
+#ifdef HAS_PENDING_HITS
   if (state == HIT)
   {
-    rays[NextList(FromEnd(groupHitsBegin + at))] = pixel;
+    StorePendingHit(GroupListBegin(HITS) + place, pixel);
   }
 #endif
 }
@@ -137,26 +113,20 @@ void KeepRays(uint state, uint pixel)
 
 void main()
 {
-  OpenGroup();
+  OpenWorkCounters();
   barrier();
   uint index = GROUP_SIZE * FoldedGroup() + gl_LocalInvocationIndex;
   uint pixel = NONE;
   uint state = DONE;
   if (index < control.Rays)
   {
-#ifdef HAS_RAYS
-    bool fresh = index >= BegunRays();
-    pixel = fresh ? PixelInTileOrder(control.Fresh + index - BegunRays()) : BegunPixel(index);
-    bool waits = !fresh && pixel != NONE && BehindFrontier(pixel);
-#else
-    bool fresh = true;
-    pixel = PixelInTileOrder(index);
-    bool waits = false;
-#endif
-    state = waits ? WAITS : pixel != NONE ? CastRay(pixel, fresh) : DONE;
+    bool isNew = index >= BegunRays();
+    pixel = isNew ? PixelInTileOrder(control.FirstNewRay + index - BegunRays()) : BegunRay(index);
+    bool waits = !isNew && pixel != NONE && BehindFrontier(pixel);
+    state = waits ? WAITS : pixel != NONE ? CastRay(pixel, isNew) : DONE;
   }
-  CountWork();
+  CloseWorkCounters();
 #ifdef HAS_RAYS
-  KeepRays(state, pixel);
+  QueueRays(state, pixel);
 #endif
 }

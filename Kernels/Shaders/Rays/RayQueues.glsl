@@ -1,68 +1,102 @@
-// The rays of a pass, and those that go on to the next.
+// The queues of rays and of hits, and for each pixel the block that its ray waits for or goes on
+// in. All lie in one buffer of three sections, a word a pixel each: the blocks, then two queues of
+// rays that take turns, this pass's and the next one's. Pending hits, which have no normal or
+// colour yet, fill the queues from their ends: those of this pass the next pass's queue, and the
+// postponed ones this pass's. No pixel is in a queue both as a ray and as a hit, so that they never
+// meet.
 
-shared uint groupActive;
-shared uint groupPairs;
-shared uint groupTouched;
-shared uint groupVisible;
-shared uint groupNeeded;
-
-uint pairs = 0u; // ray-block pairs that this invocation has intersected
-
-void OpenGroup()
-{
-  if (gl_LocalInvocationIndex == 0u)
-  {
-    groupActive = 0u;
-    groupPairs = 0u;
-    groupTouched = 0u;
-    groupVisible = 0u;
-    groupNeeded = 0u;
-  }
-}
-
-void CountWork()
-{
-  atomicAdd(groupPairs, pairs);
-#ifdef HAS_CACHE_MAP
-  atomicAdd(groupTouched, touchedSlots);
-#endif
-#ifdef BUFFER_CACHE_SEEN
-  atomicAdd(groupVisible, visibleBlocks);
-  atomicAdd(groupNeeded, activeBlocks);
-#endif
-  barrier();
-  if (gl_LocalInvocationIndex == 0u && groupActive > 0u)
-  {
-    atomicAdd(control.ActiveRays, groupActive);
-    atomicAdd(control.Pairs, groupPairs);
-#ifdef HAS_CACHE_MAP
-    atomicAdd(control.TouchedSlots, groupTouched);
-#endif
-#ifdef BUFFER_CACHE_SEEN
-    atomicAdd(control.VisibleBlocks, groupVisible);
-    atomicAdd(control.ActiveBlocks, groupNeeded);
-#endif
-  }
-}
+#include "Shared/Scene.glsl"
+#include "Shared/Buffers.glsl"
+#include "Rays/Rays.glsl"
 
 #ifdef HAS_RAYS
-// Element of the list of this pass, and of the one that is made for the next.
-uint ThisList(uint index)
+uint ThisQueue(uint index)
 {
-  return ImagePixels() * (1u + control.List) + index;
+  return ImagePixels() * (1u + control.Queue) + index;
 }
 
-uint NextList(uint index)
+uint NextQueue(uint index)
 {
-  return ImagePixels() * (2u - control.List) + index;
+  return ImagePixels() * (2u - control.Queue) + index;
 }
 
+uint FromEnd(uint index)
+{
+  return ImagePixels() - 1u - index;
+}
+
+uint BlockOfRay(uint pixel)
+{
+  return rayQueues[pixel];
+}
+
+// A ray of the next pass.
+uint NextRay(uint index)
+{
+  return rayQueues[NextQueue(index)];
+}
+
+// A hit of this pass that is pending. One of the last pass, whose ray goes on behind it: NONE if
+// the ray has ended, or the hit is still pending.
+uint PendingHit(uint index)
+{
+  return rayQueues[NextQueue(FromEnd(index))];
+}
+
+uint ContinuingRay(uint index)
+{
+  return rayQueues[ThisQueue(FromEnd(index))];
+}
+
+// Rays of this pass that have begun before: waiting ones, then continuing ones.
+uint BegunRays()
+{
+#ifdef TRANSLUCENT
+  return control.WaitingRays + control.ContinuingRays;
+#else
+  return control.WaitingRays;
+#endif
+}
+
+uint BegunRay(uint index)
+{
+#ifdef TRANSLUCENT
+  return index < control.WaitingRays ? rayQueues[ThisQueue(index)]
+                                     : ContinuingRay(index - control.WaitingRays);
+#else
+  return rayQueues[ThisQueue(index)];
+#endif
+}
+
+// Has the cache no room for this pixel's ray in this pass?
 bool BehindFrontier(uint pixel)
 {
   return control.Frontier < PixelsInTiles() && TileOrderOf(pixel) >= control.Frontier;
 }
 
-void NoteLive(uint order)
+#ifdef WRITES_RAYS
+void StoreBlockOfRay(uint pixel, uint block)
+{
+  rayQueues[pixel] = block;
+}
+
+void StoreNextRay(uint index, uint pixel)
+{
+  rayQueues[NextQueue(index)] = pixel;
+}
+
+void StorePendingHit(uint index, uint pixel)
+{
+  rayQueues[NextQueue(FromEnd(index))] = pixel;
+}
+
+void StorePostponedHit(uint index, uint pixel)
+{
+  rayQueues[ThisQueue(FromEnd(index))] = pixel;
+}
+
+// Tells the next pass of a ray that is not done, by its place in tile order.
+void RecordFirstLive(uint order)
 {
   if (control.Window < PixelsInTiles())
   {
@@ -70,51 +104,57 @@ void NoteLive(uint order)
   }
 }
 
-// Takes places for rays of which `first` is the least tile order.
-uint ReserveRays(uint count, uint first)
+// Groups of RequestBlocks that it takes for so many rays: by their number, or by what they look
+// ahead at most. See `raysPerGroup` there.
+uint RequestGroupsFor(uint rays)
 {
-  NoteLive(first);
-  uint at = atomicAdd(control.NextCarried, count);
-  // enough groups of RequestBlocks for whatever number of rays it will be, and what they look ahead
-  uint rays = at + count;
-  uint groups = max((rays + REQUEST_BLOCKS_GROUP_SIZE - 1u) / REQUEST_BLOCKS_GROUP_SIZE, min((rays + 3u) / 4u, ImagePixels() / 1024u + 1u));
-  atomicMax(control.RequestGroups.X, min(groups, MAX_GROUPS));
+  const uint leastRays = GROUP_BLOCKS_AHEAD / uint(MAX_SPECULATION);
+  const uint pixels = GROUP_BLOCKS_AHEAD * PIXELS_PER_BLOCK_AHEAD;
+  return max(GroupsOf(rays, REQUEST_BLOCKS_GROUP_SIZE),
+    min(GroupsOf(rays, leastRays), ImagePixels() / pixels + 1u));
+}
+
+// Takes places in the next pass's queue for rays of which `first` is the least tile order.
+uint ReserveNextRays(uint count, uint first)
+{
+  RecordFirstLive(first);
+  uint at = atomicAdd(control.NextWaitingRays, count);
+  atomicMax(control.RequestGroups.X, min(RequestGroupsFor(at + count), MAX_GROUPS));
   return at;
 }
 
-#ifdef HIT_LIST
-// Takes places for hits without a normal.
-uint ReserveUnlit(uint count)
+#ifdef HAS_PENDING_HITS
+// Takes places for hits of this pass.
+uint ReservePendingHits(uint count)
 {
-  uint at = atomicAdd(control.Unlit, count);
-  atomicMax(control.NormalGroups.X, min((at + count + FINISH_HITS_GROUP_SIZE - 1u) / FINISH_HITS_GROUP_SIZE, MAX_GROUPS));
+  uint at = atomicAdd(control.PendingHits, count);
+  atomicMax(
+    control.FinishGroups.X, min(GroupsOf(at + count, FINISH_HITS_GROUP_SIZE), MAX_GROUPS));
   return at;
-}
-
-// Place of such a hit, from the end of a list on.
-uint FromEnd(uint index)
-{
-  return ImagePixels() - 1u - index;
 }
 #endif
-
-// Pixel of a ray of this pass that has begun. Those of translucent hits stand in the list of those hits; NONE for one
-// that has ended, or still waits there.
-uint BegunPixel(uint index)
-{
-#ifdef TRANSLUCENT
-  return index < control.Carried ? rays[ThisList(index)] : rays[ThisList(FromEnd(index - control.Carried))];
+#endif
 #else
-  return rays[ThisList(index)];
-#endif
-}
-
+// One pass casts all rays to their ends: none has begun before.
 uint BegunRays()
 {
-#ifdef TRANSLUCENT
-  return control.Carried + control.Again;
-#else
-  return control.Carried;
-#endif
+  return 0u;
 }
+
+uint BegunRay(uint index)
+{
+  return NONE;
+}
+
+uint BlockOfRay(uint pixel)
+{
+  return NONE;
+}
+
+bool BehindFrontier(uint pixel)
+{
+  return false;
+}
+
+void StoreBlockOfRay(uint pixel, uint block) {}
 #endif

@@ -4,6 +4,7 @@
 // their face's t to the last bit. Nothing accumulates and nothing is derived back from t, so that
 // the state of a ray is just the block that it is in.
 
+#include "Shared/Scene.glsl"
 #include "Surface/Hits.glsl"
 
 struct Ray

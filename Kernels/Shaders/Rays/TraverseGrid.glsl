@@ -3,6 +3,11 @@
 // is not greater. Stepping to the next block, skipping a macrocell and starting inside the volume
 // all obey this one rule and therefore agree.
 
+#include "Shared/Scene.glsl"
+#include "Shared/Buffers.glsl"
+#include "Shared/Grid.glsl"
+#include "Rays/Rays.glsl"
+
 // The last block on each axis that holds cells: a block of a single sample holds none.
 ivec3 LastCellBlock()
 {

@@ -1,6 +1,9 @@
-// Every storage buffer of the pipeline, as the GPU sees it. docs/reference/buffers.md has their sizes, and who reads
-// and writes them. The assembler defines BUFFER_X as the declaration of a buffer up to its block's name, in stages that
-// use it only, and HAS_X in all stages if the scene needs buffer X.
+// Every storage buffer of the pipeline, as the GPU sees it. docs/reference/buffers.md has their
+// sizes, and who reads and writes them. The assembler defines BUFFER_X as the declaration of a
+// buffer up to its block's name, in stages that use it, WRITES_X in those that write it, and HAS_X
+// in all stages if the scene needs buffer X.
+
+#include "Shared/Scene.glsl"
 
 #ifdef BUFFER_CONTROL
 // A dispatch whose size the GPU decides: three group counts and a pad.
@@ -10,28 +13,28 @@ struct Dispatch
 };
 BUFFER_CONTROL Control
 {
-  // the rays of this pass: those carried over in a list, then fresh ones in tile order
+  // the rays of this pass: waiting ones, continuing ones, then new ones in tile order
   uint Rays;
-  uint Carried;
-  uint NextCarried; // rays that go on to the next pass
-  uint List;        // which of the two lists they stand in, 0 or 1
-  uint Fresh;       // first pixel, in tile order, whose ray has not begun
-  uint Frontier;    // rays of pixels from here on, in tile order, wait: the cache has no room for them
-  uint Window;      // pixels from the first live one to the frontier
-  uint FirstLive;   // least tile order of a live ray
-  uint Unlit;       // hits without a normal, which stand in the same list from its end on
-  uint NextUnlit;   // of these, such as have to wait for blocks
-  uint PassSerial;  // counts passes over the cache's whole life: the clock of the LRU
-  uint ImageSerial; // first pass of this image
-  uint PassIndex;   // passes of this image
-  uint NewImage;    // set by the CPU: the next pass is the first of an image
+  uint WaitingRays;     // for blocks, since the last pass
+  uint NextWaitingRays; // of the next pass
+  uint Queue;           // which of the two queues is this pass's, 0 or 1: see RayQueues.glsl
+  uint FirstNewRay;     // first pixel, in tile order, whose ray has not begun
+  uint Frontier;        // first pixel, in tile order, for whose ray the cache has no room: it waits
+  uint Window;          // pixels from the first live one to the frontier
+  uint FirstLive;       // least tile order of a live ray
+  uint PendingHits;     // of this pass, to be finished: given a normal or colour, or blended
+  uint PostponedHits;   // of these, such as have to wait for blocks: pending in the next pass
+  uint PassSerial;      // counts passes over the cache's whole life: the clock of the LRU
+  uint ImageSerial;     // first pass of this image
+  uint PassIndex;       // passes of this image
+  uint NewImage;        // set by the CPU: the next pass is the first of an image
   // what the pass did
-  uint ActiveRays;    // rays that were cast, without those that miss the volume or wait
+  uint ActiveRays;     // rays that were cast, without those that miss the volume or wait
   uint Pairs;         // ray-block pairs that were intersected
   uint Requests;      // blocks asked for, each once
-  uint Refused;       // of these, blocks for which the cache had no room
-  uint VisibleBlocks; // distinct blocks that were intersected, and those and the neighbours they reach
-  uint ActiveBlocks;  // into; counted only for detailed statistics
+  uint DeniedRequests; // of these, blocks for which the cache had no room
+  uint VisibleBlocks; // distinct blocks that were intersected; only for detailed statistics
+  uint ActiveBlocks;  // likewise, with the neighbours that rays reach into
   uint TouchedSlots;  // cached blocks on map pages that this image used
   // the cache: rings of free slots and of free map pages, where they begin and how many there are
   uint FreeSlotsBegin;
@@ -40,20 +43,20 @@ BUFFER_CONTROL Control
   uint FreePagesBegin;
   uint FreePages;
   uint TakenPages;
-  uint EvictWanted;  // units to be freed: see PlanEviction in PlanPass.comp
+  uint EvictWanted;  // units to be freed: see PlanEviction in PlanCache.glsl
   uint EvictByPages; // 1: a page counts as one unit; 0: as many as it has slots
   uint Evicted;      // units of the threshold age freed so far
-  uint RefusedBefore; // blocks for which the pass before had no room
-  uint Again;         // translucent hits of the last pass: their rays go on, where they do
-  uint GoingOn;       // of this pass, rays that go on behind such a hit
+  uint DeniedRequestsBefore; // of the pass before
+  uint ContinuingRays;     // the last pass's translucent hits, behind which rays may go on
+  uint NextContinuingRays; // rays that go on behind hits of this pass
   uint ControlPad0, ControlPad1, ControlPad2;
   Dispatch CastGroups;
-  Dispatch FewGroups; // where few rays are left, of CastFewRays instead
-  Dispatch NormalGroups;
+  Dispatch StragglerGroups; // of CastStragglers instead, when few rays are left
+  Dispatch FinishGroups;
   Dispatch RequestGroups;
   Dispatch DecodeGroups;
   Dispatch EvictGroups;
-  uint Ages[256]; // units on pages by their ages, in passes
+  uint Ages[PASS_AGES]; // units on pages by their ages, in passes
 }
 control;
 #endif
@@ -80,14 +83,19 @@ struct Macrocell
   uint Page;         // of the block map, where its blocks' cache slots stand
   uint Requested[2]; // blocks asked for in this pass, a bit each
 #endif
-  uint Ranges[32]; // of its 64 blocks' dual grids, two a word: steps within its own range, 8 + 8 bits each
+  // ranges of its 64 blocks' dual grids, two a word, 8 + 8 bits each: steps within its own range
+  uint Ranges[32];
 };
 BUFFER_MACROCELLS Macrocells { Macrocell macrocells[]; };
 #endif
 #ifdef BUFFER_HIDDEN_CELLS
-// Which cells are hidden, as runs of blocks that are alike: how many runs there are, the first block of each, and then two
-// words of bits for each. See HiddenCells.glsl.
-BUFFER_HIDDEN_CELLS HiddenCells { uint hiddenRuns; uint hiddenCells[]; };
+// Which cells are hidden, as runs of blocks that are alike: their number, the first block of each,
+// then two words of bits for each. See HiddenCells.glsl.
+BUFFER_HIDDEN_CELLS HiddenCells
+{
+  uint hiddenRuns;
+  uint hiddenCells[];
+};
 #endif
 
 // ---- the image
@@ -96,23 +104,20 @@ BUFFER_HIDDEN_CELLS HiddenCells { uint hiddenRuns; uint hiddenCells[]; };
 BUFFER_HITS Hits { uint hits[]; };
 #endif
 #ifdef BUFFER_LAYERS
-// What the layers of a translucent image add up to, front to back: colour times opacity, opacity; 4 x 16 bits.
+// What the layers of a translucent image add up to, front to back: colour times opacity, and
+// opacity, in 4 x 16 bits.
 BUFFER_LAYERS Layers { uvec2 layers[]; };
 #endif
 #ifdef BUFFER_NORMALS
 BUFFER_NORMALS Normals { uint normals[]; };
 #endif
 #ifdef BUFFER_RAYS
-// For every pixel the block that its live ray waits for or goes on in; then two lists, in turn, of the pixels of live rays, and from
-// their ends on of hits without a normal.
-BUFFER_RAYS Rays { uint rays[]; };
+BUFFER_RAYS Rays { uint rayQueues[]; }; // see RayQueues.glsl
 #endif
 
 // ---- the block cache
 #ifdef BUFFER_CACHE_VALUES
-// 64 samples a slot, x fastest; behind all slots likewise those of the volume that gives the colours, and then, where cells
-// are hidden, 4 words a slot: the bits of its block's cells, and two of no use. A stage that defines CACHE_BY_ROWS has all in
-// rows of four.
+// See SlotLayout.glsl. A stage that defines CACHE_BY_ROWS has all in rows of four.
 #ifdef CACHE_BY_ROWS
 BUFFER_CACHE_VALUES CacheValues { uvec4 cacheRows[]; };
 #else

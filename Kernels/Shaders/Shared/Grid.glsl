@@ -1,5 +1,7 @@
 // The grid of two levels: ZFP's blocks of samples, and macrocells of blocks.
 
+#include "Shared/Scene.glsl"
+
 // Block that holds a sample, or a cell whose lowest corner is this sample.
 ivec3 BlockOf(ivec3 voxel)
 {
@@ -9,6 +11,12 @@ ivec3 BlockOf(ivec3 voxel)
 uvec3 PlaceInBlock(ivec3 voxel)
 {
   return uvec3(voxel) & uint(BLOCK_SIDE - 1);
+}
+
+// On which axes do the next voxels lie in the next block?
+bvec3 AreLastInBlock(ivec3 voxel)
+{
+  return equal(voxel & (BLOCK_SIDE - 1), ivec3(BLOCK_SIDE - 1));
 }
 
 ivec3 MacrocellOf(ivec3 block)
@@ -46,14 +54,13 @@ uint LocalIndex(ivec3 block)
   return local.x + uint(MACROCELL_SIDE) * (local.y + uint(MACROCELL_SIDE) * local.z);
 }
 
-// Number of blocks that have room for their samples: in the cache, or all of the volume.
-uint NumberOfSlots()
+// What a plane of samples on x, y and z adds to the index of a sample in its block.
+const uvec3 STRIDES_IN_BLOCK = uvec3(1, BLOCK_SIDE, ROWS_PER_BLOCK);
+
+// From a block to its neighbour i, x fastest, of the 2^3 blocks from itself on.
+ivec3 SideOffset(int i)
 {
-#ifdef HAS_CACHE_MAP
-  return cache.Slots;
-#else
-  return volume.NumberOfBlocks;
-#endif
+  return ivec3(i) >> ivec3(0, 1, 2) & 1;
 }
 
 // The lowest value of a block, decoded from 8 bits: steps within its macrocell's range.

@@ -11,8 +11,19 @@
 #define MANY_CROSSINGS // not every crossing of a ray with a surface is its hit
 #endif
 #if defined(HAS_RAYS) && (defined(LIT) || defined(TRANSLUCENT) || defined(COLORED))
-#define HIT_LIST // hits go on, to be lit, coloured or blended
+#define HAS_PENDING_HITS // hits are queued to be lit, coloured or blended
 #endif
+#ifdef TRANSLUCENT
+#define RAYS_CONTINUE true // behind a hit
+#else
+#define RAYS_CONTINUE false
+#endif
+
+// Work groups of this size that it takes to give each item an invocation.
+uint GroupsOf(uint items, uint size)
+{
+  return (items + size - 1u) / size;
+}
 
 // Dispatches are folded into two dimensions where one would exceed MAX_GROUPS.
 #ifdef COMPUTE

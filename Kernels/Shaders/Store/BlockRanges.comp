@@ -2,21 +2,17 @@
 // neighbours, because a block's cells need 5^3 samples (its dual grid). It decodes them unless the
 // whole volume has been decoded, and stores the range of values of each block's cells in 8 + 8 bits:
 // steps within the macrocell's exact range, rounded outwards. Samples of hidden cells do not count.
-// In: Stream or CacheValues, HiddenCells. Out: Macrocells.
 
 #define CACHE_BY_ROWS
 
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
-#include "Rays/Rays.glsl"
 #include "Shared/Grid.glsl"
 #ifdef BUFFER_STREAM
 #include "Store/BlockStore.glsl"
 #include "Store/ZFPDecode.glsl"
 #endif
-#ifdef HAS_HIDDEN_CELLS
 #include "Store/HiddenCells.glsl"
-#endif
 
 const int GRID = BLOCK_SIDE * MACROCELL_SIDE + 1; // samples of a macrocell's cells on an axis
 const uint LOADED_SIDE = uint(MACROCELL_SIDE) + 1u; // blocks on an axis that hold them

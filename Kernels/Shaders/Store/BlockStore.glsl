@@ -3,6 +3,8 @@
 // aligned. A stream that is longer than one buffer can be lies in segments of whole layers of
 // macrocells; a dispatch sees one of them.
 
+#include "Shared/Scene.glsl"
+#include "Shared/Buffers.glsl"
 #include "Store/Segment.glsl.h"
 
 uniform Segment segment;

@@ -1,13 +1,11 @@
 // Decodes the blocks that rays have requested into free cache slots; without a cache, all blocks.
-// In: CacheRequests, CacheFreeSlots, Stream. Out: CacheValues, CacheMap, Macrocells, Control.
 
 #define CACHE_BY_ROWS
 
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
 #include "Shared/Grid.glsl"
-#include "Store/BlockStore.glsl"
-#include "Store/ZFPDecode.glsl"
+#include "Store/DecodeListed.glsl"
 
 #ifdef HAS_CACHE_MAP
 // Gives the block of request i the next free slot and enters it in the map; NONE if there is no slot
@@ -48,5 +46,3 @@ uint FirstSlot()
 {
   return 0u;
 }
-
-#include "Store/DecodeListed.glsl"

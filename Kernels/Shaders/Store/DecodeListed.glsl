@@ -1,27 +1,38 @@
 // The loop of both decoding stages, an invocation for each block: over the blocks that rays have
-// requested, or all of them without a cache. The stage defines SlotFor(i, block), NONE for a block
-// that gets no slot, and FirstSlot(), where its slots begin in the buffer of values.
+// requested, or all of them without a cache.
 
-uint NumberOfBlocks()
-{
-#ifdef HAS_CACHE_MAP
-  return min(control.Requests, cache.Slots);
-#else
-  return volume.NumberOfBlocks;
-#endif
-}
-
-uint BlockAt(uint i)
-{
-#ifdef HAS_CACHE_MAP
-  return cacheRequests[i];
-#else
-  return i;
-#endif
-}
-
-#ifdef BUFFER_HIDDEN_CELLS
+#include "Shared/Scene.glsl"
+#include "Shared/Buffers.glsl"
+#include "Cache/SlotLayout.glsl"
+#include "Store/BlockStore.glsl"
 #include "Store/HiddenCells.glsl"
+#include "Store/ZFPDecode.glsl"
+
+// The stage defines these: the slot of block number i; NONE if it gets none.
+uint SlotFor(uint i, uint block);
+// From which slot on it stores samples.
+uint FirstSlot();
+
+#ifdef HAS_CACHE_MAP
+uint NumberOfListedBlocks()
+{
+  return min(control.Requests, cache.Slots);
+}
+
+uint ListedBlock(uint i)
+{
+  return cacheRequests[i];
+}
+#else
+uint NumberOfListedBlocks()
+{
+  return volume.NumberOfBlocks;
+}
+
+uint ListedBlock(uint i)
+{
+  return i;
+}
 #endif
 
 void StoreBlock(uint slot, DecodedBlock decoded)
@@ -33,11 +44,11 @@ void StoreBlock(uint slot, DecodedBlock decoded)
 void main()
 {
   uint lane = gl_LocalInvocationIndex;
-  uint number = NumberOfBlocks();
+  uint number = NumberOfListedBlocks();
   uint stride = gl_NumWorkGroups.x * gl_NumWorkGroups.y * GROUP_SIZE;
   for (uint i = FoldedGroup() * GROUP_SIZE + lane; i < number; i += stride)
   {
-    uint block = BlockAt(i);
+    uint block = ListedBlock(i);
     if (InSegment(block))
     {
       uint slot = SlotFor(i, block);

@@ -2,6 +2,9 @@
 // has 64 bits, bit x + 4 y + 16 z for the cell with this lowest corner. They are copied into the
 // block's cache slot, so that only blocks without a slot have to search the runs.
 
+#include "Shared/Buffers.glsl"
+#include "Shared/Grid.glsl"
+
 #ifdef BUFFER_HIDDEN_CELLS
 // Bits of a block: those of the last run that begins at or before it.
 uvec2 FindHiddenCells(uint block)
@@ -21,25 +24,6 @@ uvec2 FindHiddenCells(uint block)
     }
   }
   return uvec2(hiddenCells[hiddenRuns + 2u * low], hiddenCells[hiddenRuns + 2u * low + 1u]);
-}
-#endif
-
-// Row of the buffer of values that holds a slot's bits; they follow all slots.
-uint HiddenRow(uint slot)
-{
-#ifdef COLORED
-  return 2u * uint(ROWS_PER_BLOCK) * NumberOfSlots() + slot;
-#else
-  return uint(ROWS_PER_BLOCK) * NumberOfSlots() + slot;
-#endif
-}
-
-#if defined(BUFFER_CACHE_VALUES) && !defined(CACHE_BY_ROWS)
-// Bits of a slot's block.
-uvec2 HiddenInSlot(uint slot)
-{
-  uint at = uint(BLOCK_SIDE) * HiddenRow(slot);
-  return uvec2(cacheValues[at], cacheValues[at + 1u]);
 }
 #endif
 

@@ -3,6 +3,8 @@
 // memory, a column for each lane, because they are indexed by a variable; everything else stays in
 // registers, where nothing may be.
 
+#include "Store/BlockStore.glsl"
+
 #define ZFP_EXPONENT_BITS 8u
 #define ZFP_EXPONENT_BIAS 127
 #define ZFP_NEGABINARY 0xAAAAAAAAu

@@ -1,42 +1,44 @@
-// The normals of the hits that have come in (part of section 3.7), once a hit. Of a translucent image the hit is lit at
-// once and blended with what lies before it, and its ray goes on. Where another volume gives the colours, its value at
-// the hit is found as well. Central differences reach a voxel beyond the cell, also to the -x, -y and -z sides, where no
-// ray may have asked for a block yet: such a hit asks, and waits.
-// In: Hits, Rays, CacheMap, CacheValues. Out: Hits, Normals or Layers, Rays, CacheRequests, CacheMap, Macrocells, Control.
+// Finishes the hits that have come in, once each: finds their normals, and if another volume gives
+// the colours its value there. Hits of a translucent image are lit at once and blended with what
+// lies before them, and their rays go on. Central differences reach a voxel beyond the cell, also
+// to the -x, -y and -z sides, where no ray may have asked for a block yet: such a hit asks, and
+// waits.
 
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
-#include "Rays/Rays.glsl"
 #include "Shared/Grid.glsl"
-#include "Cache/BlockMap.glsl"
-#ifdef HAS_CACHE_MAP
-#include "Cache/Requests.glsl"
-#endif
+#include "Shared/GroupAppend.glsl"
+#include "Cache/UseBlocks.glsl"
 #include "Rays/RayQueues.glsl"
+#include "Rays/Rays.glsl"
+#include "Surface/Hits.glsl"
 #include "Surface/Normals.glsl"
 #ifdef TRANSLUCENT
-#include "Light/Shading.glsl"
 #include "Light/Layers.glsl"
+#include "Light/Shading.glsl"
 #else
 #include "Surface/PackedNormal.glsl"
 #endif
 
+// What becomes of a hit in this pass.
+#define DONE 0u      // it needs nothing more
+#define WAITS 1u     // for blocks
+#define CONTINUES 2u // its ray does, behind it
+
 #if defined(LIT) || defined(COLORED)
-// True where the normal, or the colour, has to wait for blocks.
+// Finds the normal, and the colour's value. Returns true if they have to wait for blocks.
 bool FindNormal(Ray ray, uint pixel, out vec3 normal)
 {
   SurfacePoint hit = PointOf(ray, hits[pixel]);
-  ivec3 first = FirstStencilBlock(hit.Cell);
-  ivec3 reach = LastStencilBlock(hit.Cell) - first;
+  ivec3 first = BlockOf(FirstStencilSample(hit.Cell));
+  ivec3 reach = BlockOf(LastStencilSample(hit.Cell)) - first;
   uint missing = FindSlots(first, reach);
-#ifdef HAS_CACHE_MAP
-  for (uint bits = missing; bits != 0u; bits &= bits - 1u)
-  {
-    RequestBlock(first + SideOffset(findLSB(bits)));
-  }
-#endif
   if (missing != 0u)
   {
+    for (uint bits = missing; bits != 0u; bits &= bits - 1u)
+    {
+      RequestBlock(first + SideOffset(findLSB(bits)));
+    }
     return true;
   }
   UseBlocks(first, reach);
@@ -50,12 +52,8 @@ bool FindNormal(Ray ray, uint pixel, out vec3 normal)
 }
 #endif
 
-#define DONE 0u    // needs nothing more
-#define WAITS 1u   // for blocks
-#define GOES_ON 2u // the ray does, behind this hit
-
 #ifdef TRANSLUCENT
-uint Finish(uint pixel)
+uint FinishHit(uint pixel)
 {
   vec3 normal = vec3(0.0);
   Ray ray = CameraRay(pixel);
@@ -67,10 +65,10 @@ uint Finish(uint pixel)
 #endif
   Hit hit = HitOf(pixel);
   vec3 color = Shade(pixel, float(HitT(ray, hit.Key)), normal, hit.Isovalue);
-  return AddLayer(pixel, color, look.Colors[hit.Isovalue].Opacity) ? GOES_ON : DONE;
+  return AddLayer(pixel, color, look.Colors[hit.Isovalue].Opacity) ? CONTINUES : DONE;
 }
 #else
-uint Finish(uint pixel)
+uint FinishHit(uint pixel)
 {
   vec3 normal;
   bool waits = FindNormal(CameraRay(pixel), pixel, normal);
@@ -85,75 +83,66 @@ uint Finish(uint pixel)
 #endif
 
 #ifdef HAS_RAYS
-shared uint groupUnlit;
-shared uint groupBegin;
-
-// The work group's hits that have to wait go to the list of the pass after, which is this pass's own until then.
-void KeepUnlit(bool unlit, uint pixel)
+// Queues those of the work group's hits that have to wait, for the next pass.
+void PostponeHits(bool waits, uint pixel)
 {
-  if (gl_LocalInvocationIndex == 0u)
+  OpenGroupList(HITS);
+  barrier();
+  uint place = 0u;
+  if (waits)
   {
-    groupUnlit = 0u;
+    place = AddToGroupList(HITS);
+    RecordFirstLive(TileOrderOf(pixel));
   }
   barrier();
-  uint at = 0u;
-  if (unlit)
+  if (ReservesFor(HITS))
   {
-    at = atomicAdd(groupUnlit, 1u);
-    NoteLive(TileOrderOf(pixel));
+    SetGroupListBegin(HITS, atomicAdd(control.PostponedHits, GroupListCount(HITS)));
   }
   barrier();
-  if (gl_LocalInvocationIndex == 0u && groupUnlit > 0u)
+  if (waits)
   {
-    groupBegin = atomicAdd(control.NextUnlit, groupUnlit);
-  }
-  barrier();
-  if (unlit)
-  {
-    rays[ThisList(FromEnd(groupBegin + at))] = pixel;
+    StorePostponedHit(GroupListBegin(HITS) + place, pixel);
   }
 }
 
 #ifdef TRANSLUCENT
-// In the list of hits only those stay whose rays go on; the next pass takes them from there.
-void KeepGoing(uint index, uint pixel, bool goesOn)
+// Leaves only those in the queue of hits whose rays go on: the next pass takes them from there.
+void ContinueRay(uint index, uint pixel, bool continues)
 {
-  if (goesOn)
+  if (continues)
   {
-    atomicAdd(control.GoingOn, 1u);
-    NoteLive(TileOrderOf(pixel));
+    atomicAdd(control.NextContinuingRays, 1u);
+    RecordFirstLive(TileOrderOf(pixel));
   }
   else if (pixel != NONE)
   {
-    rays[NextList(FromEnd(index))] = NONE;
+    StorePendingHit(index, NONE);
   }
 }
 #endif
 
 void main()
 {
-#ifdef HAS_CACHE_MAP
   OpenRequests();
-#endif
   barrier();
-  for (uint first = GROUP_SIZE * gl_WorkGroupID.x; first < control.Unlit; first += GROUP_SIZE * gl_NumWorkGroups.x)
+  uint stride = GROUP_SIZE * gl_NumWorkGroups.x;
+  for (uint first = GROUP_SIZE * gl_WorkGroupID.x; first < control.PendingHits; first += stride)
   {
     uint index = first + gl_LocalInvocationIndex;
     uint pixel = NONE;
     uint state = DONE;
-    if (index < control.Unlit)
+    if (index < control.PendingHits)
     {
-      pixel = rays[NextList(FromEnd(index))];
-      state = BehindFrontier(pixel) ? WAITS : Finish(pixel);
+      pixel = PendingHit(index);
+      state = BehindFrontier(pixel) ? WAITS : FinishHit(pixel);
     }
-    KeepUnlit(state == WAITS, pixel);
+    PostponeHits(state == WAITS, pixel);
 #ifdef TRANSLUCENT
-    KeepGoing(index, pixel, state == GOES_ON);
+    ContinueRay(index, pixel, state == CONTINUES);
 #endif
   }
-#ifdef HAS_CACHE_MAP
   CloseRequests();
-#endif
 }
 #else
 void main()
@@ -162,7 +151,7 @@ void main()
   uint pixel = order < PixelsInTiles() ? PixelInTileOrder(order) : NONE;
   if (pixel != NONE && hits[pixel] != NO_HIT)
   {
-    Finish(pixel);
+    FinishHit(pixel);
   }
 }
 #endif

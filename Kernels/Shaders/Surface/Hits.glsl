@@ -5,6 +5,9 @@
 // - with another volume for the colours its value at the hit,
 // - in a translucent image the window's depth where opaque geometry may hide the surface.
 
+#include "Shared/Scene.glsl"
+#include "Shared/Buffers.glsl"
+
 struct Hit
 {
   uint Key;     // NO_HIT, or a number in the order of t: see HitKey in Rays.glsl

@@ -1,6 +1,16 @@
-// The walk of a ray through the cells of one block (section 3.7), after Amanatides and Woo.
+// Walks a ray through the cells of one block, after Amanatides and Woo, to its first hit.
 
-// Cell of the block in which the ray is at parameter t: every plane with a smaller or equal one is crossed.
+#include "Shared/Scene.glsl"
+#include "Shared/Buffers.glsl"
+#include "Cache/SlotLayout.glsl"
+#include "Rays/Rays.glsl"
+#include "Rays/TraverseGrid.glsl"
+#include "Store/HiddenCells.glsl"
+#include "Surface/Hits.glsl"
+#include "Surface/Intersection.glsl"
+#include BLOCK_ACCESS
+
+// Cell of the block in which the ray is at parameter t: it has crossed all planes up to t.
 ivec3 CellAt(Ray ray, ivec3 block, double t)
 {
   ivec3 entry = EntryPlanes(ray, block, 4);
@@ -12,45 +22,24 @@ ivec3 CellAt(Ray ray, ivec3 block, double t)
   return entry - (1 - ray.Step) / 2 + crossed * ray.Step;
 }
 
-#ifdef HAS_HIDDEN_CELLS
-#include "Store/HiddenCells.glsl"
-#endif
-
 vec4 LoadSamples(uvec4 at)
 {
-  return uintBitsToFloat(uvec4(cacheValues[at.x], cacheValues[at.y], cacheValues[at.z], cacheValues[at.w]));
+  uvec4 bits = uvec4(cacheValues[at.x], cacheValues[at.y], cacheValues[at.z], cacheValues[at.w]);
+  return uintBitsToFloat(bits);
 }
 
-// In sixteenths: nothing overflows that is made of it on the way to a root, and a power of two changes no other bit.
-vec4 Excess(vec4 values, int surface)
+// The values' excess over an isovalue, in sixteenths: a power of two changes no other bit, and
+// nothing overflows that a root is found by.
+vec4 Excess(vec4 values, int isovalue)
 {
-  vec2 isovalue = 0.0625 * vec2(view.Isovalues[surface].High, view.Isovalues[surface].Low);
-  precise vec4 excess = (0.0625 * values - isovalue.x) - isovalue.y;
+  vec2 level = 0.0625 * vec2(view.Isovalues[isovalue].High, view.Isovalues[isovalue].Low);
+  precise vec4 excess = (0.0625 * values - level.x) - level.y;
   return excess;
 }
 
-Corners Excess(Corners values, int surface)
+Corners Excess(Corners values, int isovalue)
 {
-  return Corners(Excess(values.Low, surface), Excess(values.High, surface));
-}
-
-// Where the corners of a cell are, on its lower and its upper z face, x fastest; with a cache, of a cell of the block
-// whose slots were found last.
-void FindCorners(ivec3 cell, out uvec4 low, out uvec4 high)
-{
-  uvec3 near = SampleOffsets(cell);
-  uvec3 far = NextOffsets(cell, near);
-  low = uvec4(near.x, far.x, near.x, far.x) + uvec4(near.y, near.y, far.y, far.y);
-  high = low + far.z;
-  low += near.z;
-#ifdef HAS_CACHE_MAP
-  bvec3 last = equal(cell & 3, ivec3(3)); // the far corners lie in the next block
-  uvec4 upper = last.z ? highSlots : lowSlots;
-  uvec4 lowRows = last.y ? lowSlots : lowSlots.xyxy;
-  uvec4 highRows = last.y ? upper : upper.xyxy;
-  low += 64u * (last.x ? lowRows : lowRows.xxzz);
-  high += 64u * (last.x ? highRows : highRows.xxzz);
-#endif
+  return Corners(Excess(values.Low, isovalue), Excess(values.High, isovalue));
 }
 
 // With several isovalues the samples themselves, else what they are above the isovalue.
@@ -66,6 +55,7 @@ Corners LoadCorners(ivec3 cell)
 #endif
 }
 
+// Does an isosurface cross the cell?
 bool HoldsSurface(Corners w)
 {
 #ifdef SEVERAL_ISOVALUES
@@ -82,15 +72,11 @@ bool HoldsSurface(Corners w)
 #endif
 }
 
-// What is hidden of a block, whose slots, with a cache, were found last.
+// Which cells of a block are hidden. Its slot is the first of those that were found last.
 uvec2 HiddenCellsOf(ivec3 block)
 {
 #ifdef HAS_HIDDEN_CELLS
-#ifdef HAS_CACHE_MAP
-  return HiddenInSlot(lowSlots.x);
-#else
-  return HiddenInSlot(BlockIndex(block));
-#endif
+  return HiddenInSlot(FoundSlot(block, block));
 #else
   return uvec2(0u);
 #endif
@@ -120,23 +106,33 @@ double HitBetween(double t0, double t1, float s)
   return t;
 }
 
-// Hits have an order along the ray: by their keys, and of one key by their surfaces.
+// Hits have an order along the ray: by their keys, and of one key by their isovalues.
 bool Before(Hit a, Hit b)
 {
   return a.Key < b.Key || (a.Key == b.Key && a.Isovalue < b.Isovalue);
 }
 
-#ifdef MANY_CROSSINGS
-Hit passed = MISS; // the hit that the ray has left behind
+#ifdef TRANSLUCENT
+Hit lastHit = MISS; // that the ray has left behind
+#endif
 
-// Not every crossing is a hit: it may lie in a region that is not drawn, or not be behind the last one.
-Hit Crossing(Ray ray, double t0, double t1, float s, int surface)
+// Makes a ray go on behind the last hit of its pixel. Call before any IntersectBlock.
+void PassLastHit(uint pixel)
+{
+#ifdef TRANSLUCENT
+  lastHit = HitOf(pixel);
+#endif
+}
+
+#ifdef MANY_CROSSINGS
+// A crossing is no hit if it lies in a region that is not drawn, or not behind the last hit.
+Hit Crossing(Ray ray, double t0, double t1, float s, int isovalue)
 {
   double t = HitBetween(t0, t1, s);
-  Hit hit = Hit(HitKey(ray, t), surface);
+  Hit hit = Hit(HitKey(ray, t), isovalue);
   bool counts = s >= 0.0;
 #ifdef TRANSLUCENT
-  counts = counts && (passed.Key == NO_HIT || Before(passed, hit));
+  counts = counts && (lastHit.Key == NO_HIT || Before(lastHit, hit));
 #endif
 #ifdef CROPPED
   counts = counts && IsRegionDrawn(CroppingRegion(ray.Origin + t * ray.Direction));
@@ -146,16 +142,16 @@ Hit Crossing(Ray ray, double t0, double t1, float s, int surface)
 #endif
 
 // First hit of a surface between parameters t0 and t1, along which the interpolant is this cubic.
-Hit FirstHit(Ray ray, vec4 cubic, double t0, double t1, int surface)
+Hit FirstHit(Ray ray, vec4 cubic, double t0, double t1, int isovalue)
 {
 #ifdef MANY_CROSSINGS
   vec3 s = Transitions(cubic);
-  Hit hit = Crossing(ray, t0, t1, s.x, surface);
-  hit = hit.Key == NO_HIT ? Crossing(ray, t0, t1, s.y, surface) : hit;
-  return hit.Key == NO_HIT ? Crossing(ray, t0, t1, s.z, surface) : hit;
+  Hit hit = Crossing(ray, t0, t1, s.x, isovalue);
+  hit = hit.Key == NO_HIT ? Crossing(ray, t0, t1, s.y, isovalue) : hit;
+  return hit.Key == NO_HIT ? Crossing(ray, t0, t1, s.z, isovalue) : hit;
 #else
   float s = FirstTransition(cubic);
-  return s >= 0.0 ? Hit(HitKey(ray, HitBetween(t0, t1, s)), surface) : MISS;
+  return s >= 0.0 ? Hit(HitKey(ray, HitBetween(t0, t1, s)), isovalue) : MISS;
 #endif
 }
 
@@ -179,8 +175,9 @@ bool IntersectCell(Ray ray, ivec3 cell, Corners w, double t0, double t1, dvec3 e
   return hit.Key != NO_HIT;
 }
 
-// First hit of the ray in the block between parameters t0 and end; false if there is none. The walk to the next
-// cell that the surface crosses is a loop of its own, so that the lanes of a group meet again for the costly part.
+// First hit of the ray in the block between parameters t0 and end; false if there is none. The walk
+// to the next cell that the surface crosses is a loop of its own, so that the lanes of a group meet
+// again for the costly part.
 bool IntersectBlock(Ray ray, ivec3 block, double t0, double end, out Hit hit)
 {
   hit = MISS;
@@ -192,7 +189,7 @@ bool IntersectBlock(Ray ray, ivec3 block, double t0, double end, out Hit hit)
     dvec3 exits;
     double t1;
     bool crossed = false;
-    for (int passed = 0; passed < 16; ++passed)
+    for (int walked = 0; walked < 16; ++walked)
     {
       exits = PlanesT(ray, ExitPlanes(ray, cell, 1));
       t1 = min(SmallestOf(exits), end);

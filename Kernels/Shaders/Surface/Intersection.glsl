@@ -6,6 +6,8 @@
 // All arithmetic is `precise` because two stages have to find the same bits.
 // A point is inside if value - isovalue >= 0; the surface is where inside and outside meet.
 
+#include "Shared/Scene.glsl"
+
 float Lerp(float a, float b, float s)
 {
   precise float value = a * (1.0 - s) + b * s; // exactly a at s = 0 and b at s = 1

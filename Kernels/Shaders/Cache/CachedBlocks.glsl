@@ -1,0 +1,164 @@
+// How a decoded block is found in the cache. Its slot stands on the map page of its macrocell.
+// DecodedVolume.glsl has the same interface; #include BLOCK_ACCESS is one of them.
+
+#include "Shared/Scene.glsl"
+#include "Shared/Buffers.glsl"
+#include "Shared/Grid.glsl"
+
+uint NumberOfSlots()
+{
+  return cache.Slots;
+}
+
+// NONE if the block is not in the cache.
+uint SlotOf(ivec3 block)
+{
+  uint page = macrocells[MacrocellIndex(MacrocellOf(block))].Page;
+  return page >= CLAIMED ? NONE : mapPages[page].Slots[LocalIndex(block)];
+}
+
+// What planes of samples on x, y and z add to the index of a sample in its block.
+uvec3 SampleOffsets(ivec3 planes)
+{
+  return PlaceInBlock(planes) * STRIDES_IN_BLOCK;
+}
+
+// Of the next planes, from those of `planes`.
+uvec3 NextSampleOffsets(ivec3 planes, uvec3 offsets)
+{
+  return offsets + STRIDES_IN_BLOCK -
+    uvec3(AreLastInBlock(planes)) * (uint(BLOCK_SIDE) * STRIDES_IN_BLOCK);
+}
+
+// Slots of a block and those beside it, x fastest, in the lower and the upper layer. No stage
+// indexes them: what is indexed by a variable does not stay in registers.
+uvec4 lowSlots, highSlots;
+
+uint SlotBeside(ivec3 first, ivec3 reach, ivec3 side)
+{
+  return all(lessThanEqual(side, reach)) ? SlotOf(first + side) : 0u;
+}
+
+// Finds the slots of the blocks from `first` to first + reach, a component 0 or 1. Returns a bit
+// for each that is missing.
+uint FindSlots(ivec3 first, ivec3 reach)
+{
+  lowSlots.x = SlotBeside(first, reach, ivec3(0, 0, 0));
+  lowSlots.y = SlotBeside(first, reach, ivec3(1, 0, 0));
+  lowSlots.z = SlotBeside(first, reach, ivec3(0, 1, 0));
+  lowSlots.w = SlotBeside(first, reach, ivec3(1, 1, 0));
+  highSlots.x = SlotBeside(first, reach, ivec3(0, 0, 1));
+  highSlots.y = SlotBeside(first, reach, ivec3(1, 0, 1));
+  highSlots.z = SlotBeside(first, reach, ivec3(0, 1, 1));
+  highSlots.w = SlotBeside(first, reach, ivec3(1, 1, 1));
+  uvec4 low = uvec4(equal(lowSlots, uvec4(NONE))) << uvec4(0u, 1u, 2u, 3u);
+  uvec4 high = uvec4(equal(highSlots, uvec4(NONE))) << uvec4(4u, 5u, 6u, 7u);
+  return low.x | low.y | low.z | low.w | high.x | high.y | high.z | high.w;
+}
+
+uint SlotAt(bvec3 side)
+{
+  uvec4 layer = side.z ? highSlots : lowSlots;
+  uvec2 row = side.y ? layer.zw : layer.xy;
+  return side.x ? row.y : row.x;
+}
+
+// The slot of a block, of those that were found last from `first` on.
+uint FoundSlot(ivec3 first, ivec3 block)
+{
+  return SlotAt(notEqual(block, first));
+}
+
+// Indices of the samples at a cell's corners, on its lower and its upper z face, x fastest. The
+// slots of the cell's block are those that were found last.
+void FindCorners(ivec3 cell, out uvec4 low, out uvec4 high)
+{
+  uvec3 near = SampleOffsets(cell);
+  uvec3 far = NextSampleOffsets(cell, near);
+  low = uvec4(near.x, far.x, near.x, far.x) + uvec4(near.y, near.y, far.y, far.y);
+  high = low + far.z;
+  low += near.z;
+  bvec3 last = AreLastInBlock(cell); // the far corners lie in the next block
+  uvec4 upper = last.z ? highSlots : lowSlots;
+  uvec4 lowRows = last.y ? lowSlots : lowSlots.xyxy;
+  uvec4 highRows = last.y ? upper : upper.xyxy;
+  low += uint(SAMPLES_PER_BLOCK) * (last.x ? lowRows : lowRows.xxzz);
+  high += uint(SAMPLES_PER_BLOCK) * (last.x ? highRows : highRows.xxzz);
+}
+
+// For the four planes of samples from one before a cell to one behind it, on each axis: the offsets
+// of their samples in a block, and whether they lie in the further block.
+struct Stencil
+{
+  uvec4 X, Y, Z;
+  bvec4 FurtherX, FurtherY, FurtherZ;
+};
+
+Stencil PlaceStencil(ivec3 before, ivec3 cell, ivec3 behind)
+{
+  uvec3 a = SampleOffsets(before);
+  uvec3 b = SampleOffsets(cell);
+  uvec3 c = NextSampleOffsets(cell, b);
+  uvec3 d = SampleOffsets(behind);
+  ivec3 first = BlockOf(before);
+  bvec3 fb = notEqual(BlockOf(cell), first);
+  bvec3 fc = notEqual(BlockOf(cell + 1), first);
+  bvec3 fd = notEqual(BlockOf(behind), first);
+  return Stencil(uvec4(a.x, b.x, c.x, d.x), uvec4(a.y, b.y, c.y, d.y), uvec4(a.z, b.z, c.z, d.z),
+    bvec4(false, fb.x, fc.x, fd.x), bvec4(false, fb.y, fc.y, fd.y), bvec4(false, fb.z, fc.z, fd.z));
+}
+
+// Index of a stencil's sample by its planes on x, y and z: x, y, z, w of the four. A macro, so that
+// the planes are swizzles and stay in registers.
+#define STENCIL_INDEX(at, i, j, k)                                                                 \
+  (uint(SAMPLES_PER_BLOCK) * SlotAt(bvec3(at.FurtherX.i, at.FurtherY.j, at.FurtherZ.k)) +          \
+    at.X.i + at.Y.j + at.Z.k)
+
+#ifdef WRITES_CACHE_MAP
+uint touchedSlots = 0u; // on pages that this invocation is the first of the image to use
+shared uint groupTouchedSlots;
+
+// Marks a page as used: the least recently used are evicted first.
+void UsePage(ivec3 macrocell)
+{
+  uint page = macrocells[MacrocellIndex(macrocell)].Page;
+  if (mapPages[page].Stamp != control.PassSerial)
+  {
+    uint before = atomicExchange(mapPages[page].Stamp, control.PassSerial);
+    touchedSlots += before < control.ImageSerial ? mapPages[page].Used : 0u;
+  }
+}
+
+// Marks the pages of the blocks from `first` to first + reach as used.
+void UsePages(ivec3 first, ivec3 reach)
+{
+  ivec3 across = MacrocellOf(first + reach) - MacrocellOf(first);
+  UsePage(MacrocellOf(first));
+  for (int i = 1; i < 8 && across != ivec3(0); ++i)
+  {
+    if (all(lessThanEqual(SideOffset(i), across)))
+    {
+      UsePage(MacrocellOf(first) + SideOffset(i));
+    }
+  }
+}
+
+void OpenTouchedSlots()
+{
+  groupTouchedSlots = 0u;
+}
+
+void AddTouchedSlots()
+{
+  atomicAdd(groupTouchedSlots, touchedSlots);
+}
+
+void CloseTouchedSlots()
+{
+  atomicAdd(control.TouchedSlots, groupTouchedSlots);
+}
+#endif
+
+#ifdef WRITES_CACHE_REQUESTS
+#include "Cache/Requests.glsl"
+#endif
