@@ -109,6 +109,7 @@ int vtkProgressiveIsosurfaceRepresentation::RequestData(
   vtkStreamingDemandDrivenPipeline::GetWholeExtent(
     inputVector[0]->GetInformationObject(0), this->WholeExtent);
   // skips vtkImageVolumeRepresentation's, which would cut off the ghost cells
+  // NOLINTNEXTLINE(bugprone-parent-virtual-call)
   return this->vtkVolumeRepresentation::RequestData(request, inputVector, outputVector);
 }
 
