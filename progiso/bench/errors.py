@@ -36,10 +36,10 @@ from .volume_mapper import VolumeMapper
 RATES = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0)
 SAMPLE_DISTANCES = (0.1, 0.25, 0.5, 1.0, 2.0)
 
-#: VTK's own choice of the distance.
+#: Label of VTK's own choice of the distance.
 DEFAULT_DISTANCE = "VTK's default"
 
-#: Every image is timed at least so often, unless that takes longer.
+#: How often an image is timed at least, unless that takes more than so many milliseconds.
 _REPEAT, _ENOUGH_MS = 3, 5000.0
 
 #: Main memory that this takes, in volumes of float32 samples.

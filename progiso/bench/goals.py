@@ -20,26 +20,24 @@ PAPERS_LARGEST = (2048, 2048, 1920)
 #: Milliseconds on an NVIDIA H200 at 1280x720.
 COMPLETE_MS, COMPLETE_LARGEST_MS, FIRST_PASS_MS, FILE_MS = 10.0, 20.0, 3.0, 2000.0
 
-#: The paper's implementation takes at least so many times as long: as published, and with its
-#: sort replaced.
+#: How many times faster than the paper's implementation: as published, and with its sort replaced.
 FASTER_THAN_PAPER = {GPU: (50.0, 10.0), SOFTWARE: (10.0, 1.0)}
 
-#: A move of two degrees against the cold image; time over voxels; GPU memory beside payload and
-#: cache; and that of VTK's mapper on large volumes.
+#: Largest ratio of a move of two degrees to the cold image; exponent of time over voxels; GPU
+#: memory beside stream and cache, per block and per pixel; and its ratio to VTK's mapper's.
 MOVED, EXPONENT, BYTES_PER_BLOCK, BYTES_PER_PIXEL, MEMORY = 0.5, 0.15, 3, 40, 0.1
 
-#: Bytes that memory may grow by in a thousand frames: of the process, whose heap breaks up and
-#: whose driver has caches of its own; of the GPU, by its driver, which rounds to MiB; and by the
-#: mapper, which counts what it has.
+#: Bytes that memory may grow by in a thousand frames: of the process, whose heap fragments and
+#: whose driver caches; of the GPU, whose driver rounds to MiB; of the mapper, which counts exactly.
 GROWTH = {"rss": 2**20, "gpu": 2**20, "mapper": 0}
 
-#: Part of the cores that others may keep busy while something is measured.
+#: Part of the cores that other processes may keep busy during a measurement.
 QUIET = 0.05
 
 #: Samples from which on a volume counts as large.
 LARGE = 1024**3
 
-#: Beginnings of the names of the fields that shall be faster than VTK's mapper without a GPU.
+#: Prefixes of the names of fields that must be faster than VTK's mapper without a GPU.
 FASTER_WITHOUT_GPU = ("ct-cranium-", "mri-brain-", "gyroid-256-k6-")
 
 

@@ -19,7 +19,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 from ..measure.text import number, pixels
 from .errors import DEFAULT_DISTANCE
 
-# Okabe and Ito's colours, which the colour-blind tell apart; markers say the same once more.
+# Okabe and Ito's colours, which colour-blind readers can tell apart; markers repeat them.
 _BLUE, _ORANGE, _GREEN, _RED, _PINK, _SKY, _YELLOW, _BLACK = (
     "#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#56B4E9", "#F0E442", "#000000",
 )  # fmt: skip

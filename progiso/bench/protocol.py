@@ -22,10 +22,10 @@ from .orbit import render_orbit, times
 from .settings import Settings
 from .timing import summary
 
-#: Meshes of at most so many of the isovalues are made, evenly chosen.
+#: How many isovalues meshes are made of, at most; they are evenly chosen.
 MESHES = 5
 
-#: Hit, depth, normal, ray and the window's colour and depth.
+#: Bytes of hit, depth, normal, ray, and the window's colour and depth.
 _BYTES_PER_PIXEL = 32
 
 #: Main memory that extraction may take, in volumes of float32 samples.

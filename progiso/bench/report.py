@@ -485,7 +485,7 @@ def _rates(_report: _Report, records: list[dict[str, Any]]) -> list[str]:
     return lines
 
 
-#: What a user may want of a point.
+#: Goals that a user may have for a rate.
 _RATE_GOALS = {
     "99 % of depths within 0.1 voxels": lambda point, _: point["p99"] <= 0.1,
     "0.01 voxels": lambda point, _: point["p99"] <= 0.01,
@@ -697,7 +697,7 @@ def _growth_rows(report: _Report, record: dict[str, Any]) -> Iterator[list[str]]
         yield [name, *map(bytes_, cells), report.goal(record, verdict)]
 
 
-#: Kinds of measurements that tell no time.
+#: Kinds of measurements without times.
 _UNTIMED = {"rates"}
 
 _SECTIONS = {

@@ -37,7 +37,7 @@ SAMPLES, WARM_UP = 400, 0.25
 #: Largest volume that the mapper also gets uncompressed, to compress it itself.
 LARGEST_PLAIN = 128**3
 
-#: How probable it is that a frame changes something beside camera and isovalue.
+#: Probabilities that a frame changes something beside camera and isovalue.
 CHANCES = {
     "size": 0.1,
     "look": 0.05,

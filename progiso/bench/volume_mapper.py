@@ -10,8 +10,8 @@ from vtkmodules.vtkRenderingVolume import vtkGPUVolumeRayCastMapper
 from ..measure.packed_depth import DepthRange
 from ..measure.view import View
 
-# The mapper samples at fixed steps and shades at the first sample beyond the surface: that place,
-# in texture coordinates, is what it shows. Texture coordinates have samples at texel centres.
+# The mapper samples at fixed steps and shades the first sample behind the surface: the shader keeps
+# that place, in texture coordinates. Texture coordinates have samples at texel centres.
 _DECLARE = "vec3 progisoHit = vec3(-1.0);\n"
 _REMEMBER = "if (progisoHit.x < 0.0 && g_fragColor.a > 0.0) { progisoHit = g_dataPos; }\n"
 _TEXELS = "vec3(textureSize(in_volume[0], 0))"

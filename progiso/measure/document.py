@@ -16,7 +16,7 @@ SCHEMA = 1
 
 FILE = "results.json"
 
-#: What has to be the same for figures to stand beside each other.
+#: What must be equal for results to be merged.
 _SAME = ("cpu", "cores", "gl", "gl_version", "vtk", "smp")
 
 

@@ -28,7 +28,7 @@ class View(ABC):
         Width and height in pixels.
     """
 
-    #: What tables call this way to an image.
+    #: Name of this way to an image, for tables.
     label: str
 
     def __init__(self, prop: vtkProp3D, size: tuple[int, int]) -> None:

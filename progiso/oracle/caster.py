@@ -448,7 +448,7 @@ def _cast_chunk(
     hits = np.full((3, start.shape[1]), np.inf)
     enter, leave = clip_to_box(start, step, begin, end, np.zeros(3), last)
     if slack.position:
-        # Rays that just touch the box, or just miss it, may be seen by another caster as it likes.
+        # A ray that just touches or just misses the box may have either result in another caster.
         touch, off = clip_to_box(
             start, step, begin, end, np.full(3, -slack.position), last + slack.position
         )
@@ -474,7 +474,7 @@ class _Walk:
     ) -> None:
         self.grid = grid
         self.enter = enter
-        # Distances are kept from the entry on, so that a far camera costs no digits.
+        # Distances count from the entry, so that a far camera costs no digits.
         self.start = start + enter * step
         self.step = step
         self.leave = leave - enter

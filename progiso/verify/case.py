@@ -30,7 +30,7 @@ class Settings:
     rays: int = 1_000_000
 
 
-#: Of ``--quick``.
+#: The settings of ``--quick``.
 QUICK = Settings((128, 96), 2, 100_000)
 
 

@@ -27,7 +27,7 @@ from .scene import compressed
 
 ISOVALUE = 0.0
 
-#: Bits per sample that fields of a kind are closed at, but for a few: the thin skin needs all.
+#: Bits per sample at which most fields of a kind are closed; a thin skin needs all of them.
 RATES = {"noise": (8.0, 16.0, 32.0), "smooth": (4.0, 8.0), "hollow": (8.0, 32.0), "thin": (32.0,)}
 
 #: How the work is divided: `Isosurface`'s arguments, and the budget in units of the least.

@@ -21,14 +21,13 @@ from ..oracle import caster
 from .case import Outcome, Settings, worst_of
 from .fields import make_image
 
-#: Seconds that a GPU is kept busy before an image's time counts; it has been busy not long ago.
+#: Seconds that a GPU is kept busy before an image's time counts; it was busy not long ago.
 _WARM_UP = 0.3
 
-#: From this part of grazing rays on it is told, and how many of all rays have not the caster's own
-#: hit.
+#: Part of grazing rays from which on the note tells of them.
 _TOLD = 1e-3
 
-#: Bits a sample where a case is not of a rate: what is decoded is the field's to the last places.
+#: Bits per sample where a case does not set a rate: samples are decoded to the last bits.
 RATE = 32
 
 
