@@ -16,6 +16,8 @@ FOLDERS = {
 }
 # The VTK classes stand above the folders, but for the values that all parts of a module share.
 VALUES = {"Status.h", "vtkBlockMask.h", "vtkCompressedVolume.h"}
+# Where samples are: the assembler pastes one of these.
+BLOCK_ACCESS = ("Cache/CachedBlocks.glsl", "Cache/DecodedVolume.glsl")
 SHADER_SUFFIXES = {".comp", ".frag", ".glsl", ".vert"}
 
 
@@ -66,9 +68,14 @@ def test_no_folder_is_unknown(module):
 
 def shader_includes():
     """{shader: the shaders that it includes}, by their paths below Shaders."""
-    files = [file for file in SHADERS.rglob("*") if file.suffix in SHADER_SUFFIXES]
-    assert files
-    return {file.relative_to(SHADERS).as_posix(): included(file) for file in files}
+    graph = {}
+    for file in SHADERS.rglob("*"):
+        if file.suffix in SHADER_SUFFIXES:
+            chosen = re.search(r"^#include BLOCK_ACCESS$", file.read_text("utf-8"), re.M)
+            targets = [*included(file), *(BLOCK_ACCESS if chosen else ())]
+            graph[file.relative_to(SHADERS).as_posix()] = targets
+    assert graph
+    return graph
 
 
 def test_shaders_include_without_loops():
