@@ -27,8 +27,8 @@ void CloseCache(inout PassRecord record)
 }
 
 // Lets fewer rays take part in the next pass if the cache could not serve two in a row, with an
-// eviction between them, and cannot grow: those of a window of pixels, in tile order, from the first
-// that has a live ray. It opens again as passes succeed.
+// eviction between them, and cannot grow: those of a window of pixels, in tile order, from the
+// first that has a live ray. It opens again as passes succeed.
 void PlanWindow()
 {
   uint all = PixelsInTiles();

@@ -6,7 +6,8 @@
 #include "Surface/Hits.glsl"
 #include "Output/WindowDepth.glsl"
 
-uniform vec4 selected; // the prop's identifier as a colour; w: which 24 bits of a cell's, 0: the prop's
+// The prop's identifier as a colour; w: which 24 bits of a cell's are drawn instead, 0: none.
+uniform vec4 selected;
 
 layout(location = 0) out vec4 fragmentColor;
 
@@ -35,5 +36,6 @@ void main()
   }
   float t = DepthOf(pixel);
   gl_FragDepth = WindowDepth(t);
-  fragmentColor = vec4(selected.w == 0.0 ? selected.rgb : CellColor(pixel, t, int(selected.w)), 1.0);
+  int part = int(selected.w);
+  fragmentColor = vec4(part == 0 ? selected.rgb : CellColor(pixel, t, part), 1.0);
 }

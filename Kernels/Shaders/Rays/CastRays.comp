@@ -67,6 +67,21 @@ uint CastRay(uint pixel, bool isNew)
 #ifdef HAS_RAYS
 shared uint groupFirstLive; // least tile order of the rays that wait
 
+// By one invocation: takes places in the queues for what the work group has for them.
+void ReservePlaces()
+{
+  if (ReservesFor(NEXT_RAYS))
+  {
+    SetGroupListBegin(NEXT_RAYS, ReserveNextRays(GroupListCount(NEXT_RAYS), groupFirstLive));
+  }
+#ifdef HAS_PENDING_HITS
+  if (ReservesFor(HITS))
+  {
+    SetGroupListBegin(HITS, ReservePendingHits(GroupListCount(HITS)));
+  }
+#endif
+}
+
 // Queues the work group's rays that wait for the next pass, and its hits to be finished.
 void QueueRays(uint state, uint pixel)
 {
@@ -87,16 +102,7 @@ void QueueRays(uint state, uint pixel)
   place = state == HIT ? AddToGroupList(HITS) : place;
 #endif
   barrier();
-  if (ReservesFor(NEXT_RAYS))
-  {
-    SetGroupListBegin(NEXT_RAYS, ReserveNextRays(GroupListCount(NEXT_RAYS), groupFirstLive));
-  }
-#ifdef HAS_PENDING_HITS
-  if (ReservesFor(HITS))
-  {
-    SetGroupListBegin(HITS, ReservePendingHits(GroupListCount(HITS)));
-  }
-#endif
+  ReservePlaces();
   barrier();
   if (state == WAITS)
   {

@@ -1,7 +1,8 @@
-// Builds the macrocell grid, once for a volume. A work group takes the blocks of a macrocell and their
-// neighbours, because a block's cells need 5^3 samples (its dual grid). It decodes them unless the
-// whole volume has been decoded, and stores the range of values of each block's cells in 8 + 8 bits:
-// steps within the macrocell's exact range, rounded outwards. Samples of hidden cells do not count.
+// Builds the macrocell grid, once for a volume. A work group takes the blocks of a macrocell and
+// their neighbours, because a block's cells need 5^3 samples (its dual grid). It decodes them
+// unless the whole volume has been decoded, and stores the range of values of each block's cells in
+// 8 + 8 bits: steps within the macrocell's exact range, rounded outwards. Samples of hidden cells
+// do not count.
 
 #define CACHE_BY_ROWS
 

@@ -8,8 +8,8 @@
 #include "Store/DecodeListed.glsl"
 
 #ifdef HAS_CACHE_MAP
-// Gives the block of request i the next free slot and enters it in the map; NONE if there is no slot
-// or no map page. The block may be requested again in the next pass.
+// Gives the block of request i the next free slot and enters it in the map; NONE if there is no
+// slot or no map page. The block may be requested again in the next pass.
 uint SlotFor(uint i, uint block)
 {
   ivec3 coordinates = BlockCoordinates(block);

@@ -1,6 +1,6 @@
-// Cells in which there is no surface because the volume's mask hides them (see vtkBlockMask). A block
-// has 64 bits, bit x + 4 y + 16 z for the cell with this lowest corner. They are copied into the
-// block's cache slot, so that only blocks without a slot have to search the runs.
+// Cells in which there is no surface because the volume's mask hides them (see vtkBlockMask). A
+// block has 64 bits, bit x + 4 y + 16 z for the cell with this lowest corner. They are copied into
+// the block's cache slot, so that only blocks without a slot have to search the runs.
 
 #include "Shared/Buffers.glsl"
 #include "Shared/Grid.glsl"

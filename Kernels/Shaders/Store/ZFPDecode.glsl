@@ -262,8 +262,8 @@ uint Dequantize(int i, int exponent)
 
 uvec4 DequantizeRow(ivec4 row, int exponent)
 {
-  return uvec4(Dequantize(row.x, exponent), Dequantize(row.y, exponent), Dequantize(row.z, exponent),
-    Dequantize(row.w, exponent));
+  return uvec4(Dequantize(row.x, exponent), Dequantize(row.y, exponent),
+    Dequantize(row.z, exponent), Dequantize(row.w, exponent));
 }
 
 // The bits of a decoded block's floats: rows in x direction, with number y + 4 z.

@@ -1,10 +1,10 @@
 // Intersects a ray with the trilinear isosurface inside a cell. Along the ray the trilinear
 // interpolant is a cubic. As in Marmitt et al. (2004) its roots are first isolated, then refined,
 // but on its Bernstein coefficients: values of the interpolant at corners of the box that the ray's
-// way through the cell spans (the cubic's polar form). They are convex combinations of the values at
-// the cell's corners: signs are decided without cancellation, and alike on both sides of a face.
-// All arithmetic is `precise` because two stages have to find the same bits.
-// A point is inside if value - isovalue >= 0; the surface is where inside and outside meet.
+// way through the cell spans (the cubic's polar form). They are convex combinations of the values
+// at the cell's corners: signs are decided without cancellation, and alike on both sides of a face.
+// All arithmetic is `precise` because two stages have to find the same bits. A point is inside if
+// value - isovalue >= 0; the surface is where inside and outside meet.
 
 #include "Shared/Scene.glsl"
 

@@ -1,6 +1,6 @@
 // The surface's normal at a hit: the trilinear interpolant of the voxels' central differences, as
-// in VTK's mapper, hence continuous across cells and blocks; one-sided at the volume's border, as in
-// VTK's meshes. Also the value of the volume that gives the colours.
+// in VTK's mapper, hence continuous across cells and blocks; one-sided at the volume's border, as
+// in VTK's meshes. Also the value of the volume that gives the colours.
 
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"

@@ -1,5 +1,5 @@
-// Packs unit vectors into 2 x 16 bits: places on an octahedron that is unfolded to a square (Cigolle
-// et al. 2014). They are off by at most 6.5e-5.
+// Packs unit vectors into 2 x 16 bits: places on an octahedron that is unfolded to a square
+// (Cigolle et al. 2014). They are off by at most 6.5e-5.
 
 vec2 SignNotZero(vec2 v)
 {
