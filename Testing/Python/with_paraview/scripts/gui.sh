@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
-# gui.sh BUILD OUTPUT [DISPLAY]: starts ParaView's own window on a virtual display with the plugin of BUILD, lets
-# gui_script.py show an isosurface there, and saves OUTPUT/gui_window.png, the whole window as a user sees it.
-# What gui_script.py reports is in OUTPUT/gui.json, what ParaView says in OUTPUT/gui.log. Wants Debian's python3-pil
-# (ParaView's Python packages bring it along) and python3-pyqt5. gui_refining.png is the window a moment after the third image.
+# gui.sh BUILD OUTPUT [DISPLAY]
+# Starts ParaView's own window on a virtual display with the plugin of BUILD, lets gui_script.py
+# show an isosurface there, and saves OUTPUT/gui_window.png, the whole window as a user sees it, and
+# OUTPUT/gui_refining.png, the window a moment after the third image. What gui_script.py reports is
+# in OUTPUT/gui.json, what ParaView says in OUTPUT/gui.log. Needs Debian's python3-pil, which
+# ParaView's Python packages bring along, and python3-pyqt5.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 build=$(realpath "$1")
@@ -20,12 +22,18 @@ finish() {
 }
 trap finish EXIT
 
-# A home of its own: no welcome dialog, a window as large as the screen, nothing of the user's settings.
+# A home of its own: no welcome dialog, a large window, nothing of the user's settings.
 export HOME=$scratch XDG_CONFIG_HOME=$scratch/.config XDG_RUNTIME_DIR=$scratch/run DISPLAY=$display
 mkdir -p "$XDG_RUNTIME_DIR" "$XDG_CONFIG_HOME/ParaView"
 chmod 700 "$XDG_RUNTIME_DIR"
 version=$(pvpython --version 2>&1 | grep -o '[0-9][0-9.]*$' | head -1)
-printf '[General]\nGeneralSettings.ShowWelcomeDialog=false\n[MainWindow]\nSize=@Size(1600 1500)\nPosition=@Point(0 0)\n' >"$XDG_CONFIG_HOME/ParaView/ParaView$version.ini"
+cat >"$XDG_CONFIG_HOME/ParaView/ParaView$version.ini" <<'END'
+[General]
+GeneralSettings.ShowWelcomeDialog=false
+[MainWindow]
+Size=@Size(1600 1500)
+Position=@Point(0 0)
+END
 
 Xvfb "$display" -screen 0 1600x1500x24 -noreset >/dev/null 2>&1 &
 server=$!
@@ -36,7 +44,11 @@ done
 
 rm -f "$output"/gui{.log,.json,_refining,_refining.png,_window.png}
 grab() {
-  /usr/bin/python3 -c 'import sys; from PIL import ImageGrab; ImageGrab.grab(xdisplay=sys.argv[1]).save(sys.argv[2])' "$display" "$1"
+  /usr/bin/python3 -c '
+import sys
+from PIL import ImageGrab
+ImageGrab.grab(xdisplay=sys.argv[1]).save(sys.argv[2])
+' "$display" "$1"
 }
 export PROGISO_GUI_BUILD=$build PROGISO_GUI_OUTPUT=$output
 paraview --script="$here/gui_script.py" >"$output/gui.log" 2>&1 &
