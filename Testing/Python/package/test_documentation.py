@@ -34,3 +34,14 @@ def test_architecture_names_every_folder(top):
     sources = (file for file in (ROOT / top).rglob("*") if "__pycache__" not in file.parts)
     for folder in sorted({file.parent.relative_to(ROOT).as_posix() for file in sources}):
         assert f"`{folder}/`" in text, f"docs/architecture.md does not name {folder}/"
+
+
+def test_ways_through_the_files_exist():
+    """Steps are given as `file`: `function`; a renamed function has to be renamed there too."""
+    text = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    steps = re.findall(r"`([\w./]+\.\w+)`:\s+`(\w+)`(?:[^`;.]*(?:and|or)\s+`(\w+)`)?", text)
+    assert len(steps) > 20
+    for file, *functions in steps:
+        source = (ROOT / file).read_text(encoding="utf-8")
+        for function in filter(None, functions):
+            assert re.search(rf"\b{function}\(", source), f"{file} has no {function}"
