@@ -17,7 +17,7 @@
 
 namespace
 {
-// The depth buffer has 24 bits; two of them go to the conversions.
+// Depth buffers have 24 bits; conversions cost two of them.
 constexpr double DepthTolerance = 1.0 / (1 << 22);
 
 double WindowDepth(vtkRenderer* renderer, const double position[3])
@@ -71,7 +71,7 @@ int vtkIsosurfacePicker::Pick(double x, double y, double vtkNotUsed(z), vtkRende
     prop->InitPathTraversal();
     for (vtkAssemblyPath* path = prop->GetNextPath(); path; path = prop->GetNextPath())
     {
-      this->Consider(path, nearest);
+      this->PickIfNearer(path, nearest);
     }
   }
   if (this->Path)
@@ -83,8 +83,7 @@ int vtkIsosurfacePicker::Pick(double x, double y, double vtkNotUsed(z), vtkRende
   return this->Path ? 1 : 0;
 }
 
-// Keeps what a path ends in if it is nearer than all before.
-void vtkIsosurfacePicker::Consider(vtkAssemblyPath* path, double& nearest)
+void vtkIsosurfacePicker::PickIfNearer(vtkAssemblyPath* path, double& nearest)
 {
   auto* volume = vtkVolume::SafeDownCast(path->GetLastNode()->GetViewProp());
   auto* mapper =

@@ -4,13 +4,14 @@
  * @class   vtkIsosurfacePicker
  * @brief   picks the isosurface that shows at a pixel
  *
- * Pick() looks the pixel up in the last picture of every vtkProgressiveIsosurfaceMapper in the
- * renderer and picks the nearest surface that no opaque geometry hides: exactly where the ray met
- * it, without another render. Of translucent isosurfaces that is the first that the ray met.
+ * Pick() looks the pixel up in the last image of every vtkProgressiveIsosurfaceMapper in the
+ * renderer, and picks the nearest surface that no opaque geometry hides. The position is exactly
+ * where the ray hit the surface, and nothing is rendered again. Of several translucent isosurfaces
+ * the first along the ray is picked.
  *
- * Volumes count that are visible and pickable, in assemblies too, or those of the pick list where
- * PickFromList is on. What is no isosurface is never picked; opaque, it hides what is behind it. A
- * mapper that several renderers share knows the picture of the one that was rendered last.
+ * All visible and pickable volumes take part, also those in assemblies; with PickFromList only
+ * those of the pick list. Other props are never picked, but opaque ones hide what is behind them. A
+ * mapper that several renderers share knows only the image of the renderer that was rendered last.
  *
  * @sa vtkProgressiveIsosurfaceMapper vtkPropPicker vtkCellPicker
  */
@@ -30,15 +31,15 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * Pick at a place of the window, in pixels from the bottom left; z does not matter. Returns 1
-   * where an isosurface was picked, or else 0. GetPickPosition() tells where, GetVolume() which
+   * Picks at a place of the window, in pixels from the bottom left; z is ignored. Returns 1 if an
+   * isosurface was picked, otherwise 0. GetPickPosition() returns where, GetVolume() which
    * volume's.
    */
   using vtkAbstractPropPicker::Pick;
   int Pick(double x, double y, double z, vtkRenderer* renderer) override;
 
   /**
-   * Isovalue of the surface that was picked last; not a number where none was.
+   * Isovalue of the surface that was picked last; NaN if none was.
    */
   vtkGetMacro(Isovalue, double);
 
@@ -51,7 +52,8 @@ private:
   vtkIsosurfacePicker(const vtkIsosurfacePicker&) = delete;
   void operator=(const vtkIsosurfacePicker&) = delete;
 
-  void Consider(vtkAssemblyPath* path, double& nearest);
+  /// Picks the path if its isosurface is nearer than `nearest`, a depth in the window.
+  void PickIfNearer(vtkAssemblyPath* path, double& nearest);
 
   double Isovalue;
 };

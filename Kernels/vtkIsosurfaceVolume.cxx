@@ -15,7 +15,7 @@ void vtkIsosurfaceVolume::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
 }
 
-// As vtkVolume does, which asks its mapper for its time even where an observer has taken it away.
+// Repeats vtkVolume's method, which would read from its mapper even if an observer has removed it.
 int vtkIsosurfaceVolume::Draw(vtkViewport* viewport)
 {
   const vtkSmartPointer<vtkIsosurfaceVolume> alive = this;
@@ -46,7 +46,7 @@ int vtkIsosurfaceVolume::RenderVolumetricGeometry(vtkViewport* viewport)
   }
   if (vtkProgressiveIsosurfaceMapper::IsPeeled(this))
   {
-    this->DrawnWithOverlays = true;
+    this->DrawsWithOverlays = true;
     return 0;
   }
   return this->Draw(viewport);
@@ -54,7 +54,7 @@ int vtkIsosurfaceVolume::RenderVolumetricGeometry(vtkViewport* viewport)
 
 int vtkIsosurfaceVolume::RenderOverlay(vtkViewport* viewport)
 {
-  const bool draws = this->DrawnWithOverlays;
-  this->DrawnWithOverlays = false;
+  const bool draws = this->DrawsWithOverlays;
+  this->DrawsWithOverlays = false;
   return draws ? this->Draw(viewport) : 0;
 }

@@ -2,18 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkIsosurfaceVolume
- * @brief   a vtkVolume that is drawn with the opaque geometry where its isosurfaces are opaque
+ * @brief   a vtkVolume that draws opaque isosurfaces in the opaque pass
  *
- * An opaque isosurface belongs in the renderer's opaque pass: drawn with the volumes, after the
- * translucent geometry, it would overwrite what is translucent in front of it. This prop draws its
- * mapper in the opaque pass, or with the volumes where its property makes one of the isosurfaces
- * translucent, and is otherwise a vtkVolume.
+ * An opaque isosurface belongs in the renderer's opaque pass: if it were drawn with the volumes,
+ * after the translucent geometry, it would overwrite translucent geometry in front of it. This prop
+ * draws its mapper in the opaque pass, or with the volumes if its property makes one of the
+ * isosurfaces translucent. Otherwise it is a vtkVolume.
  *
- * A translucent isosurface is drawn over translucent geometry, also where the renderer peels depths
- * of volumes (vtkRenderer::UseDepthPeelingForVolumes): its layers are not parted by such geometry.
+ * Translucent isosurfaces are drawn over translucent geometry, also if the renderer peels the
+ * depths of volumes (vtkRenderer::UseDepthPeelingForVolumes): such geometry is not sorted between
+ * their layers.
  *
- * Events: vtkCommand::StartEvent in every render, before the property is looked at: the time to
- * make the transfer functions follow isovalues.
+ * Events: vtkCommand::StartEvent in every render, before the property is read, so that observers
+ * can adapt the transfer functions to the isovalues.
  *
  * @sa vtkProgressiveIsosurfaceMapper
  */
@@ -32,8 +33,8 @@ public:
 
   ///@{
   /**
-   * One of them draws the mapper; the last where depths of volumes are peeled, after that. Return
-   * whether anything was drawn.
+   * Exactly one of them draws the mapper: the last one after the depths of volumes were peeled.
+   * Return whether anything was drawn.
    */
   int RenderOpaqueGeometry(vtkViewport* viewport) override;
   int RenderVolumetricGeometry(vtkViewport* viewport) override;
@@ -47,7 +48,7 @@ protected:
 private:
   int Draw(vtkViewport* viewport);
 
-  bool DrawnWithOverlays = false; // the next time
+  bool DrawsWithOverlays = false; ///< in the present render
 
   vtkIsosurfaceVolume(const vtkIsosurfaceVolume&) = delete;
   void operator=(const vtkIsosurfaceVolume&) = delete;

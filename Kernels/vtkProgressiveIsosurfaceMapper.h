@@ -4,36 +4,38 @@
  * @class   vtkProgressiveIsosurfaceMapper
  * @brief   progressive isosurfaces of ZFP-compressed volumes within a small memory footprint
  *
- * Renders the isosurface of a compressed volume (see vtkCompressedVolume) by progressive
- * speculative iso-raycasting on the GPU: rays travel in a wavefront, only the 4^3 blocks that they
- * meet are decompressed into a cache, the image shows after every pass, and slots of rays that are
- * done let the others test blocks ahead (Usher, Dyken and Kumar, LDAV 2023). A plain vtkImageData
- * as input is compressed on the fly, so that the mapper drops in for vtkGPUVolumeRayCastMapper in
- * isosurface blend mode. Not for direct volume rendering. There is no surface in cells that are
- * hidden, nor in those with a hidden point (vtkGhostType arrays, vtkUniformGrid's blanking).
+ * Renders isosurfaces of a compressed volume (see vtkCompressedVolume) by progressive speculative
+ * iso-raycasting on the GPU (Usher, Dyken and Kumar, LDAV 2023). Rays advance in a wavefront. Only
+ * the 4^3 blocks that they meet are decompressed, into a cache. The image shows after every pass,
+ * and the slots of rays that have finished let the other rays test blocks ahead. A plain
+ * vtkImageData is compressed on the fly, so that the mapper can replace vtkGPUVolumeRayCastMapper
+ * in isosurface blend mode. It does no direct volume rendering. Cells that are hidden or have a
+ * hidden point (vtkGhostType arrays, blanking of vtkUniformGrid) have no surface.
  *
- * The surface is that of the trilinear interpolant of the decompressed values, where values below
- * the isovalue meet values that are not. The isovalues are those of vtkVolumeProperty::
- * GetIsoSurfaceValues(), at most 16 that show; their colours and opacities those of the property's
- * transfer functions there; shading, ambient, diffuse, specular and specular power are the
- * property's too, the lights the renderer's, at most 16 that are switched on. Behind a translucent
- * isosurface rays go on; they end at opaque geometry. Clipping planes (at most 16) and cropping
+ * The surface is that of the trilinear interpolant of the decompressed values: it separates values
+ * below the isovalue from all others. The volume property gives the isovalues
+ * (vtkVolumeProperty::GetIsoSurfaceValues(), at most 16 that show), their colours and opacities
+ * (its transfer functions at the isovalues), shading, ambient, diffuse, specular and specular
+ * power; the renderer gives the lights, at most 16 that are switched on. Rays pass through
+ * translucent isosurfaces and end at opaque geometry. Clipping planes (at most 16) and cropping
  * regions are those of vtkVolumeMapper; cropping planes lie in the image's own axes.
  *
- * Render() in an interactive window performs passes for TimeAllowance seconds, shows what is there
- * and asks the interactor for another render; everywhere else (off-screen, no interactor, or a
- * window that does not swap buffers, as when ParaView takes a screenshot) it completes the image. A
- * vtkWindowToImageFilter on an interactive window gives no such sign: let GetConverged() be true,
- * or the time allowance be large, before it captures. A change of camera, size, isovalue or input
- * restarts the image. Where an observer of the window's AbortCheckEvent aborts a render it stops
- * after the pass under way; the next goes on from there. The complete image does not depend on the
- * speculation, the memory budget or the number of passes per render.
+ * In an interactive window Render() performs passes for TimeAllowance seconds, shows the image as
+ * far as it has come and requests another render from the interactor. Everywhere else (off-screen,
+ * without an interactor, or in a window that does not swap buffers, as when ParaView takes a
+ * screenshot) it completes the image. The mapper cannot recognise a vtkWindowToImageFilter on an
+ * interactive window: wait for GetConverged(), or set a large time allowance, before it captures. A
+ * change of camera, size, isovalue or input restarts the image. If an observer of the window's
+ * AbortCheckEvent aborts a render, it stops after the current pass, and the next render continues
+ * from there. The complete image does not depend on the speculation, the memory budget or the
+ * number of passes per render.
  *
- * Windows may be rendered by threads of their own. Where the GPU fails, for want of memory, say,
- * that is an error, nothing is drawn, and the next render begins with nothing.
+ * Several threads may render, each its own windows. If the GPU fails, for example because it runs
+ * out of memory, the mapper reports an error, draws nothing, and starts from scratch at the next
+ * render.
  *
  * Needs OpenGL 4.3. Add it to a scene with a vtkIsosurfaceVolume, which draws in the opaque pass; a
- * plain vtkVolume works as well but is drawn after translucent geometry.
+ * plain vtkVolume works too, but is drawn after translucent geometry.
  *
  * Events: vtkCommand::ProgressEvent after every Render() with a double*, the completed fraction.
  *
@@ -47,14 +49,19 @@
 #include "vtkVolumeMapper.h"
 
 #include <memory> // for the implementation
+#include <vector> // for the palette
 
+class Status;
 class vtkAlgorithmOutput;
 class vtkFloatArray;
+class vtkHardwareSelector;
 class vtkImageData;
+class vtkOpenGLRenderWindow;
 class vtkProgressiveIsosurfaceStatistics;
 class vtkRenderWindow;
 class vtkScalarsToColors;
 class vtkVolumeProperty;
+struct ArrayChoice;
 
 class VTKPROGISOKERNELS_EXPORT vtkProgressiveIsosurfaceMapper : public vtkVolumeMapper
 {
@@ -66,7 +73,7 @@ public:
   ///@{
   /**
    * Rate in bits per voxel at which plain input is compressed, 9/64 … 32. Default 8. Compressed
-   * input keeps its own.
+   * input keeps its rate.
    */
   vtkSetClampMacro(Rate, double, 9.0 / 64.0, 32.0);
   vtkGetMacro(Rate, double);
@@ -82,8 +89,8 @@ public:
 
   ///@{
   /**
-   * Whether NaN and infinite samples of plain input are hidden, so that the surface has a hole
-   * there, as vtkImageZFPCompress has it. Default off: they are an error.
+   * Whether NaN and infinite samples of plain input are hidden, so that the surface has holes there
+   * (see vtkImageZFPCompress). Default off: they are an error.
    */
   vtkSetMacro(MaskNonFinite, bool);
   vtkGetMacro(MaskNonFinite, bool);
@@ -93,8 +100,8 @@ public:
   ///@{
   /**
    * Another volume that gives the surface its colours: a vtkImageData on port 1, plain or
-   * compressed, with as many samples as the first. It is compressed at Rate where it is plain. Null
-   * or no connection (default): the colours are those of the isovalues.
+   * compressed, with as many samples as the first. A plain one is compressed at Rate. Null or no
+   * connection (default): the surface has the colours of the isovalues.
    */
   void SetColorInputData(vtkImageData* image);
   void SetColorInputConnection(vtkAlgorithmOutput* output);
@@ -102,8 +109,8 @@ public:
 
   ///@{
   /**
-   * Array of the (plain) input that gives the surface its colours: of the points or cells, as the
-   * one that is rendered. Null (default) or empty: none. Port 1 goes before it.
+   * Array of the (plain) input that gives the surface its colours. It belongs to points or cells,
+   * like the array that is rendered. Null (default) or empty: none. Ignored if port 1 is connected.
    */
   vtkSetStringMacro(ColorArrayName);
   vtkGetStringMacro(ColorArrayName);
@@ -111,7 +118,7 @@ public:
 
   ///@{
   /**
-   * Component of the colours' volume. Default 0.
+   * Component of the volume that gives the colours. Default 0.
    */
   vtkSetClampMacro(ColorComponent, int, 0, VTK_INT_MAX);
   vtkGetMacro(ColorComponent, int);
@@ -119,7 +126,8 @@ public:
 
   ///@{
   /**
-   * Colours of the values of the colours' volume. Null (default): the property's transfer function.
+   * Maps values of the volume that gives the colours to colours. Null (default): the property's
+   * transfer function does.
    */
   virtual void SetColorLookupTable(vtkScalarsToColors* table);
   vtkGetObjectMacro(ColorLookupTable, vtkScalarsToColors);
@@ -129,9 +137,9 @@ public:
 
   ///@{
   /**
-   * Where the renderer's lighting is two-sided (its default), whether only the side of a surface
-   * that is seen is lit, as VTK's meshes are. Default off: as with VTK's volume mapper a light
-   * reaches both sides, also from behind.
+   * Whether two-sided lighting (the renderer's default) lights only the side of a surface that is
+   * seen, as VTK does with meshes. Default off: as with VTK's volume mapper, a light reaches both
+   * sides, also from behind.
    */
   vtkSetMacro(LitLikeMeshes, bool);
   vtkGetMacro(LitLikeMeshes, bool);
@@ -140,7 +148,7 @@ public:
 
   ///@{
   /**
-   * The most blocks that a ray may test in one pass, 1 (no speculation) … 64. Default 64.
+   * Maximum number of blocks that a ray may test in one pass, 1 (no speculation) … 64. Default 64.
    */
   vtkSetClampMacro(SpeculationLimit, int, 1, 64);
   vtkGetMacro(SpeculationLimit, int);
@@ -148,11 +156,11 @@ public:
 
   ///@{
   /**
-   * Bound in bytes on all GPU memory that the mapper holds beside the compressed stream, for any
-   * view, isovalue and image size; 0 (default): automatic, a quarter of what the GPU has, but not
-   * more than 1 GiB for decoded blocks. Where what a pass needs does not fit, fewer rays take part
-   * in it; the complete image is the same. A budget too small to work at all is an error that names
-   * the least that is enough. GetStatistics()->GetMemoryBudget() tells the bound in force.
+   * Maximum GPU memory in bytes that the mapper holds beside the compressed stream, for any view,
+   * isovalue and image size; 0 (default): automatic, a quarter of the GPU's memory, but at most
+   * 1 GiB for decoded blocks. If a pass needs more, fewer rays take part in it; the complete image
+   * is the same. A budget too small to work at all is an error, whose message names the least that
+   * suffices. GetStatistics()->GetMemoryBudget() returns the budget in force.
    */
   vtkSetClampMacro(MemoryBudget, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
   vtkGetMacro(MemoryBudget, vtkTypeInt64);
@@ -160,8 +168,9 @@ public:
 
   ///@{
   /**
-   * Whether a volume that fits the memory budget when it is decoded is decoded at once: no cache,
-   * no waiting rays, one pass, and the compressed stream leaves the GPU. Default on. Same image.
+   * Whether a volume whose decoded samples fit the memory budget is decoded as a whole: there is no
+   * cache, no ray waits, one pass completes the image, and the compressed stream leaves the GPU.
+   * The image is the same. Default on.
    */
   vtkSetMacro(DecodeWholeVolume, bool);
   vtkGetMacro(DecodeWholeVolume, bool);
@@ -170,8 +179,8 @@ public:
 
   ///@{
   /**
-   * Bound in bytes on one GPU buffer, for tests; 0 (default): what OpenGL allows. A compressed
-   * stream that is longer lies in several.
+   * Maximum size in bytes of one GPU buffer, for tests; 0 (default): what OpenGL allows. A longer
+   * compressed stream is split into several buffers.
    */
   vtkSetClampMacro(LargestBuffer, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
   vtkGetMacro(LargestBuffer, vtkTypeInt64);
@@ -179,8 +188,8 @@ public:
 
   ///@{
   /**
-   * Whether the statistics tell the milliseconds of each stage and the distinct blocks of each
-   * pass. Costs time and 8 bytes a cache slot. Default off.
+   * Whether the statistics include the milliseconds of each stage and the distinct blocks of each
+   * pass. Costs time and 8 bytes per cache slot. Default off.
    */
   vtkSetMacro(DetailedStatistics, bool);
   vtkGetMacro(DetailedStatistics, bool);
@@ -189,8 +198,8 @@ public:
 
   ///@{
   /**
-   * The most passes in one Render(); 0 (default): no bound. With a bound, an image may need several
-   * renders also off-screen.
+   * Maximum number of passes in one Render(); 0 (default): unlimited. With a limit, an image may
+   * need several renders off-screen, too.
    */
   vtkSetClampMacro(MaximumPassesPerRender, int, 0, VTK_INT_MAX);
   vtkGetMacro(MaximumPassesPerRender, int);
@@ -206,69 +215,71 @@ public:
 
   ///@{
   /**
-   * Whether the image of the last Render() is complete, and the fraction of its pixels that are.
+   * Whether the image of the last Render() is complete, and the fraction of its pixels that are
+   * complete.
    */
   bool GetConverged();
   double GetCompletedFraction();
   ///@}
 
   /**
-   * What the image cost so far.
+   * What the present image has cost so far.
    */
   vtkProgressiveIsosurfaceStatistics* GetStatistics();
 
   /**
-   * Fill `image` with the depths of the last Render(): float scalars "Depth", one a pixel of the
-   * viewport in VTK's row order, distance along the ray in world units from the camera's position
-   * (in parallel projection from the camera plane), infinity where no surface was hit. Returns
-   * false, with an error event, where nothing was rendered yet.
+   * Fills `image` with the depths of the last Render(): float scalars "Depth", one for each pixel
+   * of the viewport in VTK's row order. A depth is the distance along the ray in world units from
+   * the camera's position (in parallel projection from the camera plane), or infinity if the ray
+   * hits no surface. Returns false, with an error event, if nothing has been rendered yet.
    */
   bool GetDepthImage(vtkImageData* image);
 
   /**
-   * Was the last Render() for this renderer? GetHit() and GetDepthImage() tell of its picture.
+   * Whether the last Render() was for this renderer. GetHit() and GetDepthImage() read its image.
    */
   bool WasRenderedIn(vtkRenderer* renderer);
 
   /**
-   * What the last Render() has met at a pixel of its viewport, from the bottom left: the nearest
-   * surface's place in world coordinates, and its isovalue. False where nothing was hit, or the
-   * pixel lies outside.
+   * Finds the nearest surface at a pixel of the last Render()'s viewport, counted from the bottom
+   * left: its position in world coordinates, and its isovalue. Returns false if nothing is hit
+   * there or the pixel lies outside.
    */
   bool GetHit(int x, int y, double position[3], double& isovalue);
 
   /**
-   * Does a property make one of its isosurfaces translucent, with an opacity between 0 and 1?
+   * Whether a property makes one of its isosurfaces translucent, with an opacity between 0 and 1.
    */
   static bool IsTranslucent(vtkVolumeProperty* property);
 
   /**
-   * Is a volume being rendered by a vtkDualDepthPeelingPass, layer by layer? The mapper cannot be.
+   * Whether a vtkDualDepthPeelingPass is rendering a volume layer by layer, which the mapper does
+   * not support.
    */
   static bool IsPeeled(vtkVolume* volume);
 
   /**
-   * For measurements: forget all decoded blocks, so that the next image begins anew and decodes
-   * whatever it needs.
+   * For measurements: forgets all decoded blocks. The next render restarts the image and decodes
+   * all blocks that it needs.
    */
   void EmptyCache();
 
   /**
-   * For tests: decode all samples of a compressed volume with the GPU's decoder, into `samples` in
-   * x-fastest order. Returns false, with an error event, where that is not possible.
+   * For tests: decodes all samples of a compressed volume with the GPU's decoder, into `samples` in
+   * x-fastest order. Returns false, with an error event, if that is not possible.
    */
   bool DecodeOnGPU(vtkRenderWindow* window, vtkImageData* compressed, vtkFloatArray* samples);
 
   /**
-   * OpenGL errors seen since the graphics resources were made. Counted where the environment
-   * variable PROGISO_GL_DEBUG is set to 1.
+   * OpenGL errors since the graphics resources were made. They are counted only if the environment
+   * variable PROGISO_GL_DEBUG is 1.
    */
   int GetNumberOfGLErrors();
 
   ///@{
   /**
-   * For VTK's pickers: the input where it has samples of points that they can read, or else null,
-   * as for a compressed volume (see vtkIsosurfacePicker). GetInput() always tells the input.
+   * For VTK's pickers: the input if they can read its point scalars, otherwise null, as for a
+   * compressed volume (see vtkIsosurfacePicker). GetInput() always returns the input.
    */
   vtkDataSet* GetDataSetInput() override;
   double* GetBounds() VTK_SIZEHINT(6) override;
@@ -302,7 +313,24 @@ private:
   vtkProgressiveIsosurfaceMapper(const vtkProgressiveIsosurfaceMapper&) = delete;
   void operator=(const vtkProgressiveIsosurfaceMapper&) = delete;
 
-  class Internals;
+  bool CanRender(vtkRenderer* renderer, vtkVolume* volume);
+  ArrayChoice MakeArrayChoice();
+  bool UpdateInputs();
+  bool UpdateColors(vtkImageData* image);
+  bool BindWindow(vtkOpenGLRenderWindow* window);
+  bool UpdateScene(vtkRenderer* renderer, vtkVolume* volume);
+  std::vector<float> MakePalette(vtkVolume* volume);
+  bool UpdatePipeline(bool newImage);
+  bool Refine(vtkOpenGLRenderWindow* window);
+  bool MayRefineLater(vtkOpenGLRenderWindow* window);
+  void Select(vtkHardwareSelector* selector);
+  bool Succeeds(const Status& status);
+  bool Continues(const Status& pipelineStatus);
+  void ReleaseGraphics(vtkWindow* window);
+  void UpdateStatistics();
+  bool HasImage();
+
+  struct Internals;
   std::unique_ptr<Internals> Impl;
   vtkNew<vtkProgressiveIsosurfaceStatistics> Statistics;
 };

@@ -4,24 +4,24 @@
  * @class   vtkProgressiveIsosurfaceStatistics
  * @brief   what the last image of a vtkProgressiveIsosurfaceMapper cost
  *
- * The one structure for C++, Python and the command line. Per pass, in the columns of
- * GetPassTable():
+ * C++, Python and the command line share this one structure. GetPassTable() has a row for each pass
+ * and these columns:
  *
  * - pass: 0, 1, …
- * - active_rays: rays that were cast (those that miss the volume or wait for memory are not)
- * - speculation: blocks that a ray might ask for (N_spec, section 4 of the paper)
+ * - active_rays: rays that were cast, without those that miss the volume or wait for memory
+ * - speculation: most blocks that a ray could request (N_spec in the paper)
  * - pairs: ray-block pairs that were intersected
  * - visible_blocks: distinct blocks that rays were intersected with (*)
- * - active_blocks: those and the neighbours that they reached into (*)
+ * - active_blocks: the visible blocks and the neighbours that they reach into (*)
  * - decoded_blocks: blocks that were decoded
  * - cached_blocks: cache slots in use after the pass
  * - completed: fraction of the pixels that are complete after the pass, 0 … 1
  * - elapsed_ms: milliseconds from the start of the image to the end of the pass
  *
- * (*) counted where the mapper's DetailedStatistics are on, else NaN.
+ * (*) NaN unless the mapper's DetailedStatistics are on.
  *
- * Times are the GPU's (timer queries), or wall clock where the renderer is Mesa's llvmpipe, whose
- * timer queries are not credible.
+ * Times are the GPU's (timer queries), except with Mesa's llvmpipe: its timer queries are wrong, so
+ * times are wall clock there.
  *
  * @sa vtkProgressiveIsosurfaceMapper
  */
@@ -32,11 +32,11 @@
 #include "vtkObject.h"
 #include "vtkProgIsoKernelsModule.h" // for export macro
 
-#include <string> // for names
-#include <utility>
-#include <vector>
+#include <memory> // for the figures
+#include <string> // for the OpenGL implementation
 
 class vtkTable;
+struct ImageStatistics;
 
 class VTKPROGISOKERNELS_EXPORT vtkProgressiveIsosurfaceStatistics : public vtkObject
 {
@@ -47,7 +47,7 @@ public:
 
   ///@{
   /**
-   * The passes of the image so far, one row each. GetPassValue() returns NaN where there is no such
+   * The passes of the image so far, one row each. GetPassValue() returns NaN if there is no such
    * pass or column.
    */
   int GetNumberOfPasses();
@@ -58,70 +58,67 @@ public:
   /**
    * Milliseconds spent in Render() on this image: passes and compositing, wall clock.
    */
-  double GetTotalMilliseconds() { return this->TotalMilliseconds; }
+  double GetTotalMilliseconds();
 
   ///@{
   /**
-   * Bytes of GPU memory the mapper holds: in total, of the compressed streams, and by named buffer.
-   * The buffers of the block cache have names that begin with "cache_".
+   * Bytes of GPU memory that the mapper holds: in total, for the compressed streams, and by named
+   * buffer. The names of the block cache's buffers begin with "cache_".
    */
   vtkTypeInt64 GetTotalBytes();
   vtkTypeInt64 GetCompressedBytes();
-  int GetNumberOfBuffers() { return static_cast<int>(this->Buffers.size()); }
+  int GetNumberOfBuffers();
   const char* GetBufferName(int i);
   vtkTypeInt64 GetBufferBytes(int i);
   ///@}
 
   ///@{
   /**
-   * The memory budget in force, in bytes: the mapper's, or what it chose itself; and the least that
-   * the volume can work with at this image size.
+   * The memory budget in force, in bytes: the one set on the mapper, or else the one that it chose;
+   * and the least budget that suffices for this volume and image size.
    */
-  vtkTypeInt64 GetMemoryBudget() { return this->MemoryBudget; }
-  vtkTypeInt64 GetLeastMemoryBudget() { return this->LeastMemoryBudget; }
+  vtkTypeInt64 GetMemoryBudget();
+  vtkTypeInt64 GetLeastMemoryBudget();
   ///@}
 
   ///@{
   /**
-   * Stages that ran for this image (and for its volume), and those left out because the scene did
-   * not need them, by the names of their GLSL files. With the mapper's DetailedStatistics, the
-   * milliseconds that a stage took for this image, all passes together; else 0.
+   * Stages that ran for this image (and for its volume), and stages left out because the scene did
+   * not need them, by the names of their GLSL files. GetStageMilliseconds() sums a stage's time
+   * over all passes of this image; it is 0 unless the mapper's DetailedStatistics are on.
    */
-  int GetNumberOfStages() { return static_cast<int>(this->Stages.size()); }
+  int GetNumberOfStages();
   const char* GetStage(int i);
   double GetStageMilliseconds(int i);
-  int GetNumberOfStagesLeftOut() { return static_cast<int>(this->StagesLeftOut.size()); }
+  int GetNumberOfStagesLeftOut();
   const char* GetStageLeftOut(int i);
   ///@}
 
   /**
    * Whether the image is complete.
    */
-  bool GetConverged() { return this->Converged; }
+  bool GetConverged();
 
   /**
    * Renderer and version of the OpenGL context.
    */
-  std::string GetGLDescription() { return this->GLDescription; }
+  std::string GetGLDescription();
+
+  /**
+   * For the mapper: show the figures of this image.
+   */
+  void SetImage(const ImageStatistics& image);
 
 protected:
   vtkProgressiveIsosurfaceStatistics();
   ~vtkProgressiveIsosurfaceStatistics() override;
 
 private:
-  friend class vtkProgressiveIsosurfaceMapper; // which fills it in
   vtkProgressiveIsosurfaceStatistics(const vtkProgressiveIsosurfaceStatistics&) = delete;
   void operator=(const vtkProgressiveIsosurfaceStatistics&) = delete;
 
-  vtkNew<vtkTable> Passes;
-  double TotalMilliseconds = 0.0;
-  std::vector<std::pair<std::string, vtkTypeInt64>> Buffers;
-  vtkTypeInt64 MemoryBudget = 0;
-  vtkTypeInt64 LeastMemoryBudget = 0;
-  std::vector<std::pair<std::string, double>> Stages;
-  std::vector<std::string> StagesLeftOut;
-  bool Converged = false;
-  std::string GLDescription;
+  std::unique_ptr<ImageStatistics> Image;
+  vtkNew<vtkTable> PassTable;
 };
 
 #endif

@@ -85,6 +85,11 @@ public:
   const std::map<Stage, double>& GetStages() { return this->Gpu->Timer.GetStages(); }
   /// Name and bytes of everything on the GPU.
   std::vector<std::pair<std::string, std::int64_t>> GetMemoryUse() const;
+  /// Bytes of the compressed streams, which are part of it.
+  std::int64_t GetStreamBytes() const
+  {
+    return this->Streams.GetBytes(Buffer::Stream) + this->Streams.GetBytes(Buffer::ColorStream);
+  }
   const MemoryPlan& GetMemoryPlan() const { return this->Plan; }
   ///@}
 

@@ -3,16 +3,54 @@
 #include "Scene/CompressedInput.h"
 
 #include "vtkCellData.h"
+#include "vtkCommand.h"
 #include "vtkCompressedVolume.h"
 #include "vtkDataArray.h"
+#include "vtkExecutive.h"
 #include "vtkImageData.h"
 #include "vtkImageZFPCompress.h"
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
 
+#include <cstddef>
+#include <memory>
+#include <string>
+
 namespace
 {
-vtkSmartPointer<vtkImageData> Compress(const CompressedInput::Choice& choice)
+// Keeps the first error of a filter, in place of VTK's printing it.
+class ErrorKeeper
+{
+public:
+  explicit ErrorKeeper(vtkAlgorithm* filter)
+  {
+    filter->AddObserver(vtkCommand::ErrorEvent, this, &ErrorKeeper::OnError);
+    // the executive reports a second error, that the filter failed
+    filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, this, &ErrorKeeper::OnError);
+  }
+
+  Status GetStatus() const { return this->HasError ? Status::Error(this->Message) : Status(); }
+
+private:
+  // The text is "ERROR: In file, line number\nclass (address): message\n\n".
+  void OnError(vtkObject*, unsigned long, void* text)
+  {
+    if (this->HasError)
+    {
+      return;
+    }
+    this->HasError = true;
+    this->Message = static_cast<const char*>(text);
+    const std::size_t address = this->Message.find("): ");
+    this->Message.erase(0, address == std::string::npos ? 0 : address + 3);
+    this->Message.erase(this->Message.find_last_not_of('\n') + 1);
+  }
+
+  bool HasError = false;
+  std::string Message;
+};
+
+Status Compress(const CompressedInput::Choice& choice, vtkSmartPointer<vtkImageData>& compressed)
 {
   vtkNew<vtkImageData> single;
   single->CopyStructure(choice.Image);
@@ -24,7 +62,7 @@ vtkSmartPointer<vtkImageData> Compress(const CompressedInput::Choice& choice)
   {
     single->GetPointData()->SetScalars(choice.Array);
   }
-  // of a piece of a volume, or of what is hidden
+  // ghost arrays mark samples of other pieces, and hidden points and cells
   single->GetPointData()->AddArray(choice.Image->GetPointGhostArray());
   single->GetCellData()->AddArray(choice.Image->GetCellGhostArray());
   vtkNew<vtkImageZFPCompress> compress;
@@ -36,11 +74,13 @@ vtkSmartPointer<vtkImageData> Compress(const CompressedInput::Choice& choice)
   compress->SetRate(choice.Rate);
   compress->SetComponent(choice.Component);
   compress->SetMaskNonFinite(choice.MaskNonFinite);
+  ErrorKeeper errors(compress);
   compress->Update();
-  return compress->GetOutput();
+  compressed = compress->GetOutput();
+  return errors.GetStatus();
 }
 
-// The runs of a mask as Buffers.glsl has them.
+// Packs the runs of a mask as Buffers.glsl reads them.
 std::vector<std::uint32_t> DescribeHidden(const vtkBlockMask& mask)
 {
   const std::vector<vtkBlockMask::Run>& runs = mask.GetRuns();
@@ -76,35 +116,41 @@ void CompressedInput::Release()
   this->Source = Key();
 }
 
-bool CompressedInput::Take(const Choice& choice)
+vtkImageData* CompressedInput::GetImage() const
 {
-  // a compressed volume has its own rate, component and mask
+  return this->Image;
+}
+
+Status CompressedInput::Update(const Choice& choice)
+{
+  // rate, component and mask of a compressed volume are fixed
   vtkDataArray* array = choice.Array;
   const Key key = { choice.Image, choice.Image->GetMTime(), array, array ? array->GetMTime() : 0,
     array ? choice.Rate : 0.0, array ? choice.Component : 0, array && choice.MaskNonFinite };
-  this->Error.clear();
   if (this->Image && key == this->Source)
   {
-    return true;
+    return Status();
   }
   this->Release();
   vtkSmartPointer<vtkImageData> image = choice.Image;
   if (array)
   {
-    image = Compress(choice);
+    if (Status status = Compress(choice, image); !status)
+    {
+      return status;
+    }
   }
   if (!this->Volume->Read(image))
   {
-    this->Error = array ? std::string() : this->Volume->GetErrorMessage();
-    return false;
+    return Status::Error(this->Volume->GetErrorMessage());
   }
   this->Image = image;
   this->Source = key;
   this->Time.Modified();
-  return true;
+  return Status();
 }
 
-// Words of 64 bits, as zfp writes them.
+// Whole words of 64 bits, as zfp writes them.
 CompressedStream DescribeStream(vtkCompressedVolume* volume)
 {
   CompressedStream stream;

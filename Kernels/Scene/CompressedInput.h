@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
-// An image as the pipeline takes it: a compressed volume, or an array of a plain image, which is
-// compressed here and kept until something that it was made from changes.
+// An image in the form that the pipeline takes: a compressed volume. An array of a plain image is
+// compressed, and kept until the image, the array or the choice changes.
 #ifndef CompressedInput_h
 #define CompressedInput_h
 
 #include "Pipeline/ProgressivePipeline.h"
+#include "Status.h"
 
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
 #include "vtkTimeStamp.h"
 
-#include <string>
 #include <tuple>
 
 class vtkCompressedVolume;
@@ -21,7 +21,7 @@ class vtkImageData;
 class CompressedInput
 {
 public:
-  /// What of an image is taken, and how it is compressed where it is plain.
+  /// Which array of an image, and how a plain one is compressed.
   struct Choice
   {
     vtkImageData* Image = nullptr;
@@ -37,21 +37,20 @@ public:
   CompressedInput(const CompressedInput&) = delete;
   void operator=(const CompressedInput&) = delete;
 
-  /// Make sure that this is of the image as it is now. False where it cannot be: GetError() tells
-  /// why, unless the filter that compresses has told already.
-  bool Take(const Choice& choice);
-  /// Be of no image.
+  /// Updates the compressed volume if the image or the choice has changed.
+  Status Update(const Choice& choice);
+  /// Drops the image.
   void Release();
 
-  const std::string& GetError() const { return this->Error; }
-  /// The compressed image; null where there is none.
-  vtkImageData* GetImage() const { return this->Image; }
+  /// The compressed image, or null.
+  vtkImageData* GetImage() const;
   vtkCompressedVolume* GetVolume() const { return this->Volume; }
-  /// When it became another volume, or none.
+  /// When the image last changed.
   vtkMTimeType GetTime() const { return this->Time; }
 
 private:
-  /// Image, array and their times, and what else makes a plain image another volume.
+  /// Image and array with their times, rate, component and mask: a change of any of them changes
+  /// the volume.
   using Key =
     std::tuple<vtkImageData*, vtkMTimeType, vtkDataArray*, vtkMTimeType, double, int, bool>;
 
@@ -59,10 +58,9 @@ private:
   vtkNew<vtkCompressedVolume> Volume;
   Key Source;
   vtkTimeStamp Time;
-  std::string Error;
 };
 
-///@{ What the pipeline uploads of a compressed volume; it shares the ownership of the stream.
+///@{ What the pipeline uploads of a compressed volume. It shares the ownership of the stream.
 CompressedStream DescribeStream(vtkCompressedVolume* volume);
 PipelineVolume DescribeVolume(vtkCompressedVolume* volume);
 ///@}

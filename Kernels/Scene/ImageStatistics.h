@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+// What an image cost, as vtkProgressiveIsosurfaceStatistics shows it.
+#ifndef ImageStatistics_h
+#define ImageStatistics_h
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+class ProgressivePipeline;
+
+/// A pass of the image: see vtkProgressiveIsosurfaceStatistics for the meaning of each member.
+struct PassStatistics
+{
+  double Pass;
+  double ActiveRays;
+  double Speculation;
+  double Pairs;
+  double VisibleBlocks;
+  double ActiveBlocks;
+  double DecodedBlocks;
+  double CachedBlocks;
+  double Completed;
+  double ElapsedMilliseconds;
+};
+
+/// A column of the table of passes, and the member that it shows.
+struct PassColumn
+{
+  const char* Name;
+  double PassStatistics::*Value;
+};
+
+constexpr PassColumn PassColumns[] = {
+  { "pass", &PassStatistics::Pass },
+  { "active_rays", &PassStatistics::ActiveRays },
+  { "speculation", &PassStatistics::Speculation },
+  { "pairs", &PassStatistics::Pairs },
+  { "visible_blocks", &PassStatistics::VisibleBlocks },
+  { "active_blocks", &PassStatistics::ActiveBlocks },
+  { "decoded_blocks", &PassStatistics::DecodedBlocks },
+  { "cached_blocks", &PassStatistics::CachedBlocks },
+  { "completed", &PassStatistics::Completed },
+  { "elapsed_ms", &PassStatistics::ElapsedMilliseconds },
+};
+
+struct ImageStatistics
+{
+  std::vector<PassStatistics> Passes;
+  double TotalMilliseconds = 0.0;                            ///< spent in Render() on this image
+  std::vector<std::pair<std::string, std::int64_t>> Buffers; ///< names and bytes
+  std::int64_t StreamBytes = 0;                              ///< of the compressed streams
+  std::int64_t MemoryBudget = 0;
+  std::int64_t LeastMemoryBudget = 0;
+  std::vector<std::pair<std::string, double>> Stages; ///< that ran, and their milliseconds
+  std::vector<std::string> StagesLeftOut;
+  bool Converged = false;
+  std::string GLDescription;
+};
+
+/// Collects what the pipeline knows of its present image. Without `distinctBlocksCounted` the
+/// numbers of visible and active blocks are NaN.
+ImageStatistics CollectStatistics(
+  ProgressivePipeline& pipeline, std::int64_t pixels, bool distinctBlocksCounted);
+
+#endif

@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Scene/InputArrays.h"
+
+#include "vtkAbstractMapper.h"
+#include "vtkCellData.h"
+#include "vtkCompressedVolume.h"
+#include "vtkImageData.h"
+#include "vtkImageZFPCompress.h"
+#include "vtkPointData.h"
+
+#include <algorithm>
+
+namespace
+{
+vtkDataArray* FindArray(const ArrayChoice& choice, vtkImageData* image, bool& cellData)
+{
+  if (choice.ScalarMode == VTK_SCALAR_MODE_DEFAULT)
+  {
+    int association = vtkCompressedVolume::PointData;
+    vtkDataArray* array = vtkImageZFPCompress::FindDefaultArray(image, association);
+    cellData = association == vtkCompressedVolume::CellData;
+    return array;
+  }
+  int cellFlag = 0;
+  vtkDataArray* array = vtkAbstractMapper::GetScalars(
+    image, choice.ScalarMode, choice.ArrayAccessMode, choice.ArrayId, choice.ArrayName, cellFlag);
+  cellData = cellFlag == 1;
+  return array;
+}
+}
+
+Status InputArrays::UpdateValues(const ArrayChoice& choice, vtkImageData* image)
+{
+  CompressedInput::Choice values = { image, nullptr, false, choice.Component, choice.Rate,
+    choice.MaskNonFinite };
+  if (!vtkCompressedVolume::IsCompressed(image))
+  {
+    values.Array = FindArray(choice, image, values.CellData);
+    if (!values.Array)
+    {
+      return Status::Error("the input image has no scalars: select an array that it has");
+    }
+  }
+  return this->Values.Update(values);
+}
+
+Status InputArrays::UpdateColorsFromImage(const ArrayChoice& choice, vtkImageData* image)
+{
+  CompressedInput::Choice colors = { image, nullptr, this->HasCellData(), choice.ColorComponent,
+    choice.Rate, choice.MaskNonFinite };
+  const bool compressed = image && vtkCompressedVolume::IsCompressed(image);
+  if (image && !compressed)
+  {
+    colors.Array = FindArray(choice, image, colors.CellData);
+  }
+  if (!compressed && !colors.Array)
+  {
+    return Status::Error("the colours' volume has no scalars");
+  }
+  return this->UpdateColors(colors);
+}
+
+Status InputArrays::UpdateColorsFromArray(const ArrayChoice& choice, vtkImageData* image)
+{
+  const bool cellData = this->HasCellData();
+  vtkDataSetAttributes* attributes =
+    cellData ? static_cast<vtkDataSetAttributes*>(image->GetCellData()) : image->GetPointData();
+  vtkDataArray* array = attributes->GetArray(choice.ColorArrayName);
+  if (!array)
+  {
+    return Status::Error("the input has no array \"", choice.ColorArrayName,
+      "\" beside the one that is rendered: name one that it has, or connect the colours' volume to "
+      "port 1");
+  }
+  return this->UpdateColors(
+    { image, array, cellData, choice.ColorComponent, choice.Rate, choice.MaskNonFinite });
+}
+
+Status InputArrays::UpdateColors(const CompressedInput::Choice& choice)
+{
+  if (Status status = this->Colors.Update(choice); !status)
+  {
+    return status;
+  }
+  const int* values = this->Values.GetVolume()->GetDimensions();
+  const int* colors = this->Colors.GetVolume()->GetDimensions();
+  return std::equal(values, values + 3, colors)
+    ? Status()
+    : Status::Error("the colours' volume has other dimensions than the one that is rendered: "
+                    "resample it to the same");
+}
+
+vtkMTimeType InputArrays::GetTime() const
+{
+  return std::max(this->Values.GetTime(), this->Colors.GetTime());
+}
+
+PipelineVolume InputArrays::Describe() const
+{
+  PipelineVolume volume = DescribeVolume(this->Values.GetVolume());
+  if (this->Colors.GetImage())
+  {
+    volume.Colors = DescribeStream(this->Colors.GetVolume());
+  }
+  return volume;
+}
+
+bool InputArrays::HasCellData() const
+{
+  return this->Values.GetVolume()->GetAssociation() == vtkCompressedVolume::CellData;
+}
