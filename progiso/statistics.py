@@ -15,19 +15,15 @@ from ._vtk import vtk_errors
 from .camera import Camera
 from .vtkProgIsoKernels import vtkProgressiveIsosurfaceMapper, vtkProgressiveIsosurfaceStatistics
 
-#: Names of the figures of a pass, in this order.
-PASS_KEYS = (
-    "pass",
-    "active_rays",
-    "speculation",
-    "pairs",
-    "visible_blocks",
-    "active_blocks",
-    "decoded_blocks",
-    "cached_blocks",
-    "completed",
-    "elapsed_ms",
-)
+
+def _pass_keys() -> tuple[str, ...]:
+    """Return the names of the columns that the mapper's statistics have for every pass."""
+    table = vtkProgressiveIsosurfaceStatistics().GetPassTable()
+    return tuple(table.GetColumnName(i) for i in range(table.GetNumberOfColumns()))
+
+
+#: Names of the figures of a pass, in order: see `vtkProgressiveIsosurfaceStatistics`.
+PASS_KEYS = _pass_keys()
 _FRACTIONAL = ("completed", "elapsed_ms")
 
 
