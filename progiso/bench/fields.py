@@ -224,7 +224,9 @@ def compressed(field: Field) -> vtkImageData:
     if field.volume in SCANS:
         return compress(plain(field), rate=field.rate)
     _check_disk(int(field.voxels * field.rate / 8), "bits")
-    return read(fetch_compressed(field.volume, field.dimensions, field.rate, **_options(field)))
+    return read(
+        fetch_compressed(field.volume, size=field.dimensions, rate=field.rate, **_options(field))
+    )
 
 
 def save_compressed(field: Field, folder: str | os.PathLike[str]) -> Path:

@@ -47,6 +47,7 @@ def cache_folder() -> Path:
 
 def fetch(
     name: str,
+    *,
     folder: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
     **options: Any,
@@ -95,6 +96,7 @@ def fetch(
 
 def compressed(
     name: str,
+    *,
     size: int | Sequence[int] = 128,
     rate: float = 8.0,
     folder: str | os.PathLike[str] | None = None,
@@ -140,4 +142,6 @@ def compressed(
         known = ", ".join(GENERATORS)
         raise ValueError(f"there is no generator named '{name}'; there are: {known}")
     folder = Path(folder) if folder is not None else cache_folder()
-    return generate_compressed(GENERATORS[name], folder, size, rate, progress, **options)
+    return generate_compressed(
+        GENERATORS[name], folder, size=size, rate=rate, progress=progress, **options
+    )

@@ -84,6 +84,7 @@ class Generator:
 def generate(
     generator: Generator,
     folder: str | os.PathLike[str],
+    *,
     size: int | Sequence[int] = 128,
     progress: Progress | None = None,
     **options: float,
@@ -128,6 +129,7 @@ def generate(
 def generate_compressed(
     generator: Generator,
     folder: str | os.PathLike[str],
+    *,
     size: int | Sequence[int] = 128,
     rate: float = 8.0,
     progress: Progress | None = None,

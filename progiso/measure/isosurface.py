@@ -42,6 +42,7 @@ class Isosurface(View):
         image: vtkImageData,
         isovalue: float,
         size: tuple[int, int],
+        *,
         speculation: bool = True,
         detailed: bool = False,
         memory_budget: int = 0,

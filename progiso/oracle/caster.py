@@ -180,6 +180,7 @@ def cast(
     isovalue: float,
     camera: Camera,
     size: tuple[int, int],
+    *,
     slack: Slack = Slack(),
     clip: tuple[float, float] = (0.0, np.inf),
     pixels: np.ndarray | None = None,
@@ -206,9 +207,8 @@ def cast(
     """
     origins, directions = camera.rays(size, pixels)
     across = directions @ camera.forward
-    result = cast_rays(
-        volume, isovalue, origins, directions, slack, clip[0] / across, clip[1] / across
-    )
+    begin, end = clip[0] / across, clip[1] / across
+    result = cast_rays(volume, isovalue, origins, directions, slack=slack, begin=begin, end=end)
     shape = (size[1], size[0]) if pixels is None else (-1,)
     return Cast(
         *(getattr(result, name).reshape(shape) for name in ("depth", "early", "late", "voxels"))
@@ -220,6 +220,7 @@ def cast_rays(
     isovalue: float,
     origins: np.ndarray,
     directions: np.ndarray,
+    *,
     slack: Slack = Slack(),
     begin: np.ndarray | float = 0.0,
     end: np.ndarray | float = np.inf,

@@ -42,6 +42,7 @@ def coordinates(shape: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray, np.ndar
 def make_image(
     values: np.ndarray,
     name: str = "field",
+    *,
     cells: bool = False,
     origin: Sequence[float] = (0, 0, 0),
     spacing: Sequence[float] = (1, 1, 1),

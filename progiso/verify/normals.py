@@ -89,6 +89,7 @@ def check_normals(
     image: vtkImageData,
     isovalue: float,
     gradient: Callable[[np.ndarray], np.ndarray] | None = None,
+    *,
     camera: Camera | None = None,
     limit: float = tolerances.NORMAL_DEGREES,
     inner: float = 0.0,

@@ -67,6 +67,7 @@ class Picture(Isosurface):
         image: vtkImageData,
         isovalue: float,
         size: tuple[int, int],
+        *,
         user: np.ndarray | None = None,
         clip: tuple[float, float] | None = None,
         **settings: Any,
@@ -106,6 +107,7 @@ def check_depths(
     image: vtkImageData,
     isovalue: float,
     camera: Camera | None = None,
+    *,
     size: tuple[int, int] | None = None,
     grazing: float = tolerances.GRAZING_FRACTION,
     hits: bool = True,
@@ -162,7 +164,9 @@ def check_depths(
         pixels = np.sort(np.random.default_rng(1).integers(0, depth.size, sample))
         depth = depth.ravel()[pixels]
     level = isovalue if level is None else level
-    expected = caster.cast(volume, level, eye, size, tolerances.SLACK, clip, pixels)
+    expected = caster.cast(
+        volume, level, eye, size, slack=tolerances.SLACK, clip=clip, pixels=pixels
+    )
     found = compare(depth, expected)
     defects = (
         "" if complete else "the image is not complete",

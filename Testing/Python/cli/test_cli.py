@@ -132,7 +132,7 @@ def test_render(folder):
     volume = reference_volume(image)
     camera = orbit(volume, 1, 5)
     assert depth.dtype == np.float32 and depth.shape == (150, 200)
-    check_depth(depth, cast(volume, 0.1, camera, (200, 150), tolerances.SLACK))
+    check_depth(depth, cast(volume, 0.1, camera, (200, 150), slack=tolerances.SLACK))
     assert statistics["converged"] and statistics["size"] == [200, 150]
     seen = statistics["camera"]
     assert seen["position"] == pytest.approx(camera.position) and seen[
@@ -193,7 +193,7 @@ def test_render_raw_by_its_name(folder):
         folder, "blobs_44x36x40_float32.raw", "--size", "120x90", "--orbit", "0/3"
     )
     volume = reference_volume(progiso.compress(make_image(blobs((40, 36, 44), 3)), rate=8))
-    check_depth(depth, cast(volume, 0.1, orbit(volume, 0, 3), (120, 90), tolerances.SLACK))
+    check_depth(depth, cast(volume, 0.1, orbit(volume, 0, 3), (120, 90), slack=tolerances.SLACK))
 
 
 def test_render_in_parallel_projection(folder):
@@ -214,7 +214,7 @@ def test_render_in_parallel_projection(folder):
             0.1,
             camera,
             (120, 90),
-            tolerances.SLACK,
+            slack=tolerances.SLACK,
         ),
     )
 

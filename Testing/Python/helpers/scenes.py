@@ -166,7 +166,9 @@ def check_scene(
     scene = Scene(image, isovalue, camera, size, user_matrix, **settings)
     got = scene.depth()
     volume = volume or reference_volume(image, user_matrix)
-    expected = cast(volume, isovalue, camera, size, tolerances.SLACK, scene.clipping_range)
+    expected = cast(
+        volume, isovalue, camera, size, slack=tolerances.SLACK, clip=scene.clipping_range
+    )
     check_depth(got, expected, grazing)
     return scene
 

@@ -60,7 +60,11 @@ def test_hidden_cells(case):
     values[:, :, [i for i in range(1, 9) if hidden[0, 0, i - 1] and hidden[0, 0, i]]] = np.nan
     origins = np.array([[-3.0, 2.2, 1.7], [4.2, 2.2, 1.7], [8.5, 2.2, 1.7]])
     found = cast_rays(
-        Volume(values, np.eye(4), hidden), 0.0, origins, np.eye(3)[[0, 0, 0]], tolerances.SLACK
+        Volume(values, np.eye(4), hidden),
+        0.0,
+        origins,
+        np.eye(3)[[0, 0, 0]],
+        slack=tolerances.SLACK,
     )
     assert found.depth + origins[:, 0] == pytest.approx(depths, abs=tolerances.ORACLE_EXACT)
     assert (found.early <= found.depth).all() and (found.depth <= found.late).all()
@@ -221,7 +225,7 @@ def test_slack_brackets_what_a_disturbed_field_shows():
     rng = np.random.default_rng(4)
     values = rng.normal(size=(9, 9, 9))
     camera = Camera((25, 14, 19), (4, 4, 4), view_angle=30)
-    result = cast(plain(values), 0.0, camera, (80, 60), Slack(value=2e4))
+    result = cast(plain(values), 0.0, camera, (80, 60), slack=Slack(value=2e4))
     assert np.all(result.early <= result.depth) and np.all(result.depth <= result.late)
     moved = 0
     for seed in range(8):

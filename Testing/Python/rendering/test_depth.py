@@ -210,7 +210,10 @@ def test_isovalue_equal_to_voxels(isovalue):
     assert set(np.unique(volume.values)) == {0, 1, 2}
     camera = orbit(volume, 1, 3)
     scene = Scene(image, isovalue, camera)
-    got, expected = scene.depth(), cast(volume, isovalue, camera, (160, 120), tolerances.SLACK)
+    got, expected = (
+        scene.depth(),
+        cast(volume, isovalue, camera, (160, 120), slack=tolerances.SLACK),
+    )
     check_depth(got, expected, grazing=1.0)
     # Inside is "at least the isovalue", and whole numbers are exact: nothing is below the least,
     # and plateaus are hit at their edges.

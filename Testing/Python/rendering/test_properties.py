@@ -195,7 +195,12 @@ def check_same_surface(scenes, volume, kind):
     depths = [scene.depth() for scene in scenes]
     for scene, depth in zip(scenes, depths):
         expected = cast(
-            volume, scene.isovalue, scene.camera, SIZE, tolerances.SLACK, scene.clipping_range
+            volume,
+            scene.isovalue,
+            scene.camera,
+            SIZE,
+            slack=tolerances.SLACK,
+            clip=scene.clipping_range,
         )
         few = np.isfinite(expected.early).sum() < FEW  # of a speck all rays may graze
         check_depth(depth, expected, 1.0 if few else grazing)

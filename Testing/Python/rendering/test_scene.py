@@ -122,7 +122,7 @@ def test_depth_buffer(image, parallel):
     data = vtkFloatArray()
     scene.window.GetZbufferData(0, 0, SIZE[0] - 1, SIZE[1] - 1, data)
     z = vtk_to_numpy(data).reshape(SIZE[1], SIZE[0])[::-1]
-    expected = cast(volume, ISOVALUE, camera, SIZE, tolerances.SLACK)
+    expected = cast(volume, ISOVALUE, camera, SIZE, slack=tolerances.SLACK)
     hit = np.isfinite(expected.late)
     assert np.array_equal(z == 1, ~np.isfinite(scene_depth := progiso.depth(scene.mapper)))
     near, far = scene.renderer.GetActiveCamera().GetClippingRange()
@@ -144,7 +144,7 @@ def test_opaque_geometry_hides_and_is_hidden(image, distance):
     scene.renderer.AddActor(wall(camera, distance, (1, 0, 0)))
     scene.render()
     picture = scene.picture()
-    expected = cast(volume, ISOVALUE, camera, SIZE, tolerances.SLACK)
+    expected = cast(volume, ISOVALUE, camera, SIZE, slack=tolerances.SLACK)
     eye = expected.depth * across(camera, SIZE)
     in_front, behind = (eye < distance - 1e-2) & np.isfinite(expected.late), eye > distance + 1e-2
     behind &= ~(np.isfinite(expected.early) & ~np.isfinite(expected.late))

@@ -101,7 +101,7 @@ from helpers.messages import vtk_messages
 from helpers.comparison import OPAQUE, show
 
 def slopes(n):
-    return progiso.compress(make_image(np.indices((n,) * 3, np.float32).sum(0) / n - 1.5), 1)
+    return progiso.compress(make_image(np.indices((n,) * 3, np.float32).sum(0) / n - 1.5), rate=1)
 
 small, large = slopes(32), slopes(256)
 scene = ComparisonScene(ours=True)
