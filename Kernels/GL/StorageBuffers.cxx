@@ -16,6 +16,22 @@ int Index(Buffer buffer)
 {
   return static_cast<int>(buffer);
 }
+
+// Gives the buffer that is bound its memory.
+void CommitMemory(std::int64_t bytes, bool sparse)
+{
+  const GLsizeiptr size = static_cast<GLsizeiptr>(bytes);
+  if (sparse)
+  {
+    glBufferStorage(
+      GL_SHADER_STORAGE_BUFFER, size, nullptr, GL_SPARSE_STORAGE_BIT_ARB | GL_DYNAMIC_STORAGE_BIT);
+    glBufferPageCommitmentARB(GL_SHADER_STORAGE_BUFFER, 0, size, GL_TRUE);
+  }
+  else
+  {
+    glBufferData(GL_SHADER_STORAGE_BUFFER, size, nullptr, GL_DYNAMIC_COPY);
+  }
+}
 }
 
 Status MakeStorageBuffer(
@@ -34,17 +50,7 @@ Status MakeStorageBuffer(
   }
   glGenBuffers(1, &name);
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
-  const GLsizeiptr size = static_cast<GLsizeiptr>(bytes);
-  if (limits.SparseBuffers && bytes > largestPlain)
-  {
-    glBufferStorage(
-      GL_SHADER_STORAGE_BUFFER, size, nullptr, GL_SPARSE_STORAGE_BIT_ARB | GL_DYNAMIC_STORAGE_BIT);
-    glBufferPageCommitmentARB(GL_SHADER_STORAGE_BUFFER, 0, size, GL_TRUE);
-  }
-  else
-  {
-    glBufferData(GL_SHADER_STORAGE_BUFFER, size, nullptr, GL_DYNAMIC_COPY);
-  }
+  CommitMemory(bytes, limits.SparseBuffers && bytes > largestPlain);
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
   if (glGetError() == GL_NO_ERROR)
   {

@@ -104,6 +104,8 @@ void ProgressivePipeline::SetPalette(const std::vector<float>& palette)
 // the streams go again.
 Status ProgressivePipeline::LoadVolume()
 {
+  this->Gpu->Timer.Forget();
+  this->VolumeLoaded = false;
   Status status = this->Gpu->Buffers.Allocate(Lifetime::Volume, this->Extent);
   if (status && !this->Extent.Cached)
   {
@@ -113,17 +115,18 @@ Status ProgressivePipeline::LoadVolume()
   {
     status = this->UploadVolume();
   }
-  if (!status)
-  {
-    return status;
-  }
-  if (!this->Extent.Cached)
+  if (status && !this->Extent.Cached)
   {
     this->DecodeWholeVolume();
   }
-  this->Gpu->Dispatch(
-    Stage::BlockRanges, this->Extent.Macrocells, this->Streams.GetSegments(Stage::BlockRanges));
-  return this->GetStatus();
+  if (status)
+  {
+    this->Gpu->Dispatch(
+      Stage::BlockRanges, this->Extent.Macrocells, this->Streams.GetSegments(Stage::BlockRanges));
+    status = this->GetStatus();
+  }
+  this->VolumeLoaded = status.IsOk();
+  return status;
 }
 
 Status ProgressivePipeline::UploadVolume()
@@ -282,8 +285,7 @@ void ProgressivePipeline::UpdateExtent(const PipelineScene& scene)
   this->Extent.Cropped = view.DrawnRegions != glsl::ALL_REGIONS;
 }
 
-// Makes each buffer as large as the scene needs and the budget allows, after those are freed that
-// are too large.
+// Makes each buffer as large as the scene needs and the budget allows.
 Status ProgressivePipeline::MakeRoom(bool newImage)
 {
   this->Plan = PlanMemory(this->Gpu->Gl.GetLimits(), this->Settings, this->Extent);
@@ -294,6 +296,23 @@ Status ProgressivePipeline::MakeRoom(bool newImage)
       " bytes beside the compressed stream"));
   }
   const bool reload = !this->VolumeLoaded || this->Plan.Cached != this->Extent.Cached;
+  this->FreeForPlan(reload);
+  Status status = reload ? this->LoadVolume() : Status();
+  if (status)
+  {
+    status = this->Gpu->Buffers.Allocate(Lifetime::Image, this->Extent);
+  }
+  if (status)
+  {
+    status = this->Plan.Cached ? this->MakeCache(newImage)
+                               : this->Gpu->Buffers.Allocate(Lifetime::Cache, this->Extent);
+  }
+  return status;
+}
+
+// Frees first what the plan wants in another size, so that the sum never exceeds the budget.
+void ProgressivePipeline::FreeForPlan(bool reload)
+{
   const std::int64_t before = this->Extent.Slots;
   const std::int64_t kept = reload ? 0 : std::min(before, this->Plan.MaximumSlots);
   this->Extent = this->Plan.Cached ? WithCache(this->Extent, kept) : WithWholeVolume(this->Extent);
@@ -305,23 +324,6 @@ Status ProgressivePipeline::MakeRoom(bool newImage)
   this->Gpu->Buffers.Trim(this->Extent);
   this->Gpu->SetExtent(this->Extent);
   this->UploadCacheBlock();
-  Status status;
-  if (reload)
-  {
-    this->Gpu->Timer.Forget();
-    status = this->LoadVolume();
-    this->VolumeLoaded = status.IsOk();
-  }
-  if (status)
-  {
-    status = this->Gpu->Buffers.Allocate(Lifetime::Image, this->Extent);
-  }
-  if (status)
-  {
-    status = this->Plan.Cached ? this->MakeCache(newImage)
-                               : this->Gpu->Buffers.Allocate(Lifetime::Cache, this->Extent);
-  }
-  return status;
 }
 
 //------------------------------------------------------------------------------

@@ -98,6 +98,7 @@ private:
   void DropDecodedBlocks();
   void UpdateExtent(const PipelineScene& scene);
   Status MakeRoom(bool newImage);
+  void FreeForPlan(bool reload);
   Status LoadVolume();
   Status UploadVolume();
   void DecodeWholeVolume();
