@@ -105,7 +105,7 @@ bool vtkCompressedVolume::Read(vtkImageData* image)
 //------------------------------------------------------------------------------
 void vtkCompressedVolume::Write(vtkImageData* image) const
 {
-  // VTK's get macros make functions that are not const
+  // not const in the call, because the functions of VTK's get macros are not
   CompressedVolumeFormat::Write(const_cast<vtkCompressedVolume*>(this), image);
 }
 

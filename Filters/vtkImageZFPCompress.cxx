@@ -78,8 +78,8 @@ std::string NameOf(vtkDataArray* array)
 }
 
 //------------------------------------------------------------------------------
-// Whether an array is one of some attributes: not by name, since a point and a cell array may share
-// one.
+// Whether an array is one of these attributes. Not by name, which a point and a cell array may
+// share.
 bool HasArray(vtkDataSetAttributes* attributes, vtkDataArray* array)
 {
   for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
@@ -93,7 +93,7 @@ bool HasArray(vtkDataSetAttributes* attributes, vtkDataArray* array)
 }
 
 //------------------------------------------------------------------------------
-// Makes the output what the input is, without its point and cell arrays, and without a stream.
+// Copies the input without its point and cell arrays, and without a stream.
 void CopyWithoutArrays(vtkImageData* input, vtkImageData* output)
 {
   output->Initialize();

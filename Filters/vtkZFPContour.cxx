@@ -75,7 +75,7 @@ bool IsOwnTriangle(
 {
   for (int axis = 0; axis < 3; ++axis)
   {
-    double middle = 0.0; // in the triangle's cell, because all of the triangle is
+    double middle = 0.0; // of the triangle; it lies in the same cell as all of it
     for (const vtkIdType corner : *corners)
     {
       middle += surface->GetPoint(corner)[axis] / 3.0;

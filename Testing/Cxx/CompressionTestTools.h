@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the tests of the compression classes share: test images, libzfp as the reference, and errors
-// counted instead of printed.
+// Tools of the tests of compression: test images, libzfp as the reference, and a collector of
+// errors.
 #ifndef CompressionTestTools_h
 #define CompressionTestTools_h
 
@@ -41,7 +41,7 @@ inline vtkIdType Product(const Dims& dims)
   return static_cast<vtkIdType>(dims[0]) * dims[1] * dims[2];
 }
 
-// Smooth values with noise, reproducible.
+// Makes smooth values with noise, always the same.
 inline std::vector<float> Samples(const Dims& dims, unsigned int seed = 1)
 {
   std::mt19937 generator(seed);
@@ -49,14 +49,14 @@ inline std::vector<float> Samples(const Dims& dims, unsigned int seed = 1)
   float last = 0.0f;
   for (float& value : values)
   {
-    // the engine's own integers: distributions differ between libraries
+    // not by a distribution, which differs between libraries
     last = 0.9f * last + static_cast<float>(generator() % 2001) - 1000.0f;
     value = 0.125f * last;
   }
   return values;
 }
 
-// An image with every part of its geometry away from the default, and one array.
+// Makes an image with one array, and no part of its geometry at its default.
 inline vtkSmartPointer<vtkImageData> Image(
   const Dims& dims, vtkDataArray* array, bool cells = false, const char* name = "density")
 {
@@ -95,7 +95,7 @@ inline vtkSmartPointer<vtkImageData> FloatImage(const Dims& dims, bool cells = f
   return Image(dims, FloatArray(Samples(dims)), cells);
 }
 
-// libzfp itself, in one call.
+// The results of libzfp itself.
 struct Reference
 {
   std::vector<vtkTypeUInt64> Stream;
@@ -129,7 +129,7 @@ struct Reference
   }
 };
 
-// Collects the errors of an algorithm and its executive while it lives.
+// Collects the errors of an algorithm and its executive.
 class Errors
 {
 public:
@@ -142,7 +142,7 @@ public:
     algorithm->GetExecutive()->AddObserver("ErrorEvent", this->Observer);
   }
 
-  // Whether there was exactly one, with these words.
+  // Whether there was exactly one error, with these words.
   bool IsOne(const std::string& words) const
   {
     return this->Texts.size() == 1 && this->Texts[0].find(words) != std::string::npos;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// vtkCompressedVolume: reads what was written, and rejects with its name whatever is missing, of
-// the wrong type, inconsistent, truncated or too large.
+// vtkCompressedVolume reads what it wrote, and names what is missing, of the wrong type,
+// inconsistent, truncated or too large.
 #include "CompressionTestTools.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ TEST(CompressedVolume, Statics)
 }
 
 //------------------------------------------------------------------------------
-// A valid volume with one array of its metadata replaced (or, by null, removed).
+// Reads a valid volume with one array of its metadata replaced (or, by null, removed).
 bool ReadWith(const char* name, vtkAbstractArray* array, const std::string& words)
 {
   const auto image = Compress(FloatImage(Size));
@@ -121,7 +121,7 @@ TEST(CompressedVolume, Rejects)
 }
 
 //------------------------------------------------------------------------------
-// Dimensions that agree with an extent, yet cannot be: nothing may overflow.
+// Reads dimensions that agree with an impossible extent, whose sizes must not overflow.
 void ExpectRefusedExtent(int low, int high, const std::string& words)
 {
   const auto image = Compress(FloatImage(Size));
@@ -136,7 +136,7 @@ void ExpectRefusedExtent(int low, int high, const std::string& words)
     << volume->GetErrorMessage();
 }
 
-// A stream's extent that has 2 points where 64-bit integers wrap.
+// Reads a stream's extent that has 2 points only if 64-bit integers wrap.
 void ExpectRefusedWrapping()
 {
   const auto image = Compress(FloatImage(Size));
@@ -158,7 +158,7 @@ void ExpectRefusedWrapping()
     << volume->GetErrorMessage();
 }
 
-// An image without points, or cells, cannot be a part of what a stream covers.
+// An image without points, or cells, cannot be a part of a stream.
 TEST(CompressedVolume, EmptyPieces)
 {
   for (const bool cells : { false, true })

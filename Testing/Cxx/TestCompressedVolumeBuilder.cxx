@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// vtkCompressedVolumeBuilder against one call of libzfp, however the slices are dealt out; and what
-// it refuses.
+// vtkCompressedVolumeBuilder against one call of libzfp, for slabs of different sizes; and its
+// errors.
 #include "CompressionTestTools.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace
 {
 using namespace test;
 
-// Slices [first, last) of an array of three components whose second has the values.
+// Makes slices [first, last) of an array of three components, the second of which has the values.
 vtkSmartPointer<vtkFloatArray> Slab(
   const Dims& dims, const std::vector<float>& values, int first, int last)
 {
@@ -62,7 +62,7 @@ void ExpectReference(const Dims& dims, double rate, int depth)
 }
 
 //------------------------------------------------------------------------------
-// Whether the builder objects with these words, and then to everything until it is started anew.
+// Expects an error with these words, and that nothing succeeds until the next Start().
 void ExpectRefusal(vtkCompressedVolumeBuilder* builder, bool result, const std::string& words)
 {
   EXPECT_TRUE(!result && builder->GetErrorMessage().find(words) != std::string::npos)

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// vtkImageZFPCompress against one call of libzfp: rates, shapes, types, components, threads; and
-// the pipeline around it.
+// vtkImageZFPCompress against one call of libzfp, for rates, shapes, types, components and threads;
+// and its use of the pipeline.
 #include "CompressionTestTools.h"
 
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ TEST(ImageZFPCompress, RatesShapesThreads)
 }
 
 //------------------------------------------------------------------------------
-// Large enough for several steps, which meet inside a group of blocks and inside a word.
+// A volume of many groups of blocks, which threads share.
 TEST(ImageZFPCompress, Steps)
 {
   const Dims dims = { 301, 299, 41 };
@@ -182,7 +182,7 @@ TEST(ImageZFPCompress, Errors)
 }
 
 //------------------------------------------------------------------------------
-// zfp's encoder overflows for blocks below 2^-98: they become zero, unless that would be seen.
+// Blocks below 2^-98, for which zfp's encoder overflows, become zero, unless that would show.
 TEST(ImageZFPCompress, TinyValues)
 {
   const Dims dims = { 8, 4, 4 }; // two blocks
@@ -256,8 +256,8 @@ TEST(ImageZFPCompress, ProgressAndAbort)
   EXPECT_FALSE(vtkCompressedVolume::IsCompressed(compress->GetOutput())) << "aborted";
 }
 //------------------------------------------------------------------------------
-// Ghost marks of another number than there are cells or points, or in no order: nothing is read
-// beyond them, and extents stay in order.
+// Ghost flags of another number than cells or points, or in disorder: nothing is read beyond them,
+// and extents stay valid.
 TEST(ImageZFPCompress, OddMarks)
 {
   const auto marked = [](bool cells, vtkIdType number, std::initializer_list<vtkIdType> own)
@@ -288,7 +288,7 @@ TEST(ImageZFPCompress, OddMarks)
       EXPECT_TRUE(volume->Read(marked(cells, other, {}))) << volume->GetErrorMessage();
       EXPECT_FALSE(volume->HidesAny()) << "marks of " << other << " cells";
     }
-    // the first own one lies further on in x and y than the last
+    // the first cell that is no ghost has greater x and y than the last
     const vtkIdType row = cells ? 6 : 5;
     EXPECT_TRUE(volume->Read(marked(cells, number, { 3 + 3 * row, number - 3 * row })))
       << volume->GetErrorMessage();

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// vtkImageZFPDecompress against libzfp, on compressed volumes as they come from filters and files.
+// vtkImageZFPDecompress against libzfp, on compressed volumes from filters and files.
 #include "CompressionTestTools.h"
 
 #include <gtest/gtest.h>

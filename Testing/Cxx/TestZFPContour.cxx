@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// vtkZFPContour against vtkFlyingEdges3D on the decoded image: the same triangles in every bit.
+// vtkZFPContour against vtkFlyingEdges3D on the decoded image: the same triangles, bit for bit.
 #include "CompressionTestTools.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ using namespace test;
 
 const char* const ArrayNames[] = { "Normals", "Gradients", "density" };
 
-// A point's coordinates and what is stored with it, in bits: equal only where all is equal.
+// A point's coordinates and its values in all arrays, as bits.
 std::vector<vtkTypeUInt32> BitsOfPoint(vtkPolyData* surface, vtkIdType point)
 {
   std::vector<float> values;
@@ -42,7 +42,7 @@ std::vector<vtkTypeUInt32> BitsOfPoint(vtkPolyData* surface, vtkIdType point)
   return bits;
 }
 
-// All triangles, whatever their order, but each with its corners in theirs.
+// Collects all triangles, sorted; each keeps the order of its corners.
 std::vector<std::vector<vtkTypeUInt32>> Triangles(vtkPolyData* surface)
 {
   std::vector<std::vector<vtkTypeUInt32>> triangles(surface->GetNumberOfCells());
@@ -107,7 +107,7 @@ TEST(ZFPContour, EqualsFlyingEdges)
 }
 
 //------------------------------------------------------------------------------
-// Order and all, whatever threads there are and wherever they come from.
+// The same mesh, in the same order, for any number of threads and any backend.
 TEST(ZFPContour, ThreadsDoNotShow)
 {
   const auto compressed = Compress(FloatImage({ 40, 41, 42 }));
@@ -153,7 +153,7 @@ TEST(ZFPContour, DecodesWhatItNeeds)
   contour->Update();
   EXPECT_TRUE(contour->GetNumberOfBricks() == 64) << contour->GetNumberOfBricks();
   EXPECT_TRUE(contour->GetNumberOfDecodedBricks() == 64) << "ranges are not known at first";
-  // 8 cells, a sample more, one on either side, in whole blocks: one brick at a time
+  // one brick: 8 cells have 9 samples, with one more on either side 11, in whole blocks 16
   EXPECT_TRUE(contour->GetPeakSampleBytes() == 4 * 16 * 16 * 16) << contour->GetPeakSampleBytes();
   contour->SetValue(0, 10.5);
   contour->Update();

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// vtkZFPReader on files as libzfp makes them, in every mode, with and without header, whole, cut
-// and damaged.
+// vtkZFPReader on files from libzfp, in every mode, with and without header, whole, cut and
+// damaged.
 #include "CompressionTestTools.h"
 
 #include <gtest/gtest.h>
@@ -27,12 +27,12 @@ void WriteFile(const std::string& bytes)
 }
 
 //------------------------------------------------------------------------------
-// A file that libzfp makes of the test samples in the mode that `setMode` sets.
+// Makes a file of the test samples by libzfp, in the mode that `setMode` sets.
 std::string MakeFile(bool header, zfp_type type, int dimensions,
   const std::function<void(zfp_stream*)>& setMode, const Dims& dims = Size)
 {
   std::vector<float> values = Samples(dims);
-  values.resize(2 * values.size()); // as many doubles
+  values.resize(2 * values.size()); // enough for as many doubles
   std::vector<vtkTypeUInt64> words(values.size() + 4096);
   bitstream* bits = stream_open(words.data(), 8 * words.size());
   zfp_stream* zfp = zfp_stream_open(bits);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// vtkZFPWriter against libzfp's own way of writing: header, then the field, in one bit stream.
+// vtkZFPWriter against files from libzfp: header, then the field, in one bit stream.
 #include "CompressionTestTools.h"
 
 #include <gtest/gtest.h>

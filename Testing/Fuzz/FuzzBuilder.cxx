@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// vtkCompressedVolumeBuilder called in any order with slabs of any size and type; what it makes is
-// what vtkImageZFPCompress makes of the same samples.
+// Calls vtkCompressedVolumeBuilder in any order with slabs of any size and type. The result must be
+// that of vtkImageZFPCompress for the same samples.
 #include "HostileImage.h"
 
 #include <vtkCompressedVolumeBuilder.h>
@@ -11,7 +11,7 @@ namespace
 {
 using namespace fuzz;
 
-// The slabs that a builder took since its last start.
+// The slabs that a builder took after its last Start().
 struct Taken
 {
   vtkSmartPointer<vtkDataArray> Samples;
@@ -41,7 +41,7 @@ void Start(vtkCompressedVolumeBuilder* builder, Taken& taken, Bytes& bytes)
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkDataArray> MakeSlab(const int dims[3], Bytes& bytes)
 {
-  const int type = ArrayTypes[bytes.Below(13)]; // those of numbers
+  const int type = ArrayTypes[bytes.Below(13)]; // the types of numbers
   auto slab = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
   const int slices = bytes.Flag() ? 4 * (1 + bytes.Below(3)) : bytes.Below(16);
   const vtkIdType perSlice = std::min<vtkIdType>(
@@ -77,7 +77,7 @@ void AddSlab(vtkCompressedVolumeBuilder* builder, Taken& taken, Bytes& bytes)
     taken.Samples = vtkSmartPointer<vtkDataArray>::Take(slab->NewInstance());
     taken.Component = component;
   }
-  // exact, where doubles are not
+  // not through doubles, which cannot hold all integers
   const vtkIdType tuples = slab->GetNumberOfTuples();
   const auto one = vtkSmartPointer<vtkDataArray>::Take(slab->NewInstance());
   one->SetNumberOfTuples(tuples);
@@ -108,7 +108,7 @@ void Finish(vtkCompressedVolumeBuilder* builder, Taken& taken)
   CHECK(expected->Read(compress->GetOutput()), expected->GetErrorMessage());
   CHECK(made->Read(image), made->GetErrorMessage());
   CHECK(made->GetComponent() == taken.Component, made->GetComponent());
-  if (expected->HasUnits() || made->HasUnits()) // which the builder is told, not the filter
+  if (expected->HasUnits() || made->HasUnits()) // only the builder is told units
   {
     return;
   }

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Our blocks against libzfp's own library, with the bit stream that it has: streams of any bits
-// decode to the same samples, any samples encode to the same bits, and our bit stream
-// (cmake/zfp/bitstream.inl) does what libzfp's does, call by call.
+// Compares our codec with Debian's libzfp, which has its own bit stream: streams of any bits decode
+// to the same samples, any samples encode to the same bits, and our bit stream
+// (cmake/zfp/bitstream.inl) does the same call by call.
 #include "FuzzTools.h"
 
 #include <vtkCompressedVolumeBuilder.h>
@@ -16,7 +16,7 @@ namespace
 using namespace fuzz;
 
 //------------------------------------------------------------------------------
-// The functions of libzfp.so.1, whose names ours have too.
+// The functions of libzfp.so.1, which have the same names as ours.
 struct LibZFP
 {
   void* Handle = dlopen("libzfp.so.1", RTLD_NOW | RTLD_LOCAL);
@@ -95,7 +95,7 @@ void CheckDecoding(const int dims[3], int blockBits, Bytes& bytes)
   auto* const decoded =
     vtkArrayDownCast<vtkFloatArray>(decompress->GetOutput()->GetPointData()->GetScalars());
 
-  // a word more, as zfp reads ahead
+  // one more word, because zfp reads ahead
   std::vector<vtkTypeUInt64> words(stream->GetNumberOfValues() / 8 + 1);
   std::memcpy(words.data(), stream->GetPointer(0), stream->GetNumberOfValues());
   std::vector<float> expected(samples);
@@ -106,7 +106,7 @@ void CheckDecoding(const int dims[3], int blockBits, Bytes& bytes)
 }
 
 //------------------------------------------------------------------------------
-// Finite samples; blocks of tiny ones (see SampleEncoder) become zero as ours do.
+// Makes finite samples; tiny ones are zero, as SampleEncoder encodes them.
 std::vector<float> MakeSamples(const int dims[3], Bytes& bytes)
 {
   std::vector<float> samples(static_cast<std::size_t>(dims[0]) * dims[1] * dims[2]);
@@ -139,7 +139,7 @@ void CheckEncoding(const int dims[3], int blockBits, Bytes& bytes)
 }
 
 //------------------------------------------------------------------------------
-// Two bit streams, ours and libzfp's, do the same; positions stay within their words.
+// Calls the same functions of our bit stream and of libzfp's, at positions within their words.
 class BitStreams
 {
 public:
@@ -241,7 +241,7 @@ public:
     BOTH(stream_wtell);
   }
 
-  // The words of libzfp's library may be shorter than ours, so may what its own functions add.
+  // libzfp may have shorter words than ours, and so may the padding that its functions add.
   void Flush()
   {
     LIBZFP(stream_pad);
@@ -256,7 +256,7 @@ public:
       std::equal(this->Words[0], this->Words[0] + Count, this->Words[1]), "written differently");
   }
 
-  // operations between two checks: they cannot leave the words
+  // few enough calls between two checks to stay within the words
   static constexpr int Operations = 32;
 
 private:

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// vtkImageZFPCompress on images with any values, flags and settings; what it makes decompresses to
-// an image that compresses again.
+// Runs vtkImageZFPCompress on images with any values, flags and settings. The output must
+// decompress to an image that compresses again.
 #include "HostileImage.h"
 
 #include <vtkImageZFPDecompress.h>
@@ -26,7 +26,7 @@ vtkSmartPointer<vtkImageData> PlainImage(Bytes& bytes)
     attributes = image->GetCellData();
   }
   const vtkIdType tuples = cells ? image->GetNumberOfCells() : image->GetNumberOfPoints();
-  const int type = ArrayTypes[bytes.Below(13)]; // those of numbers
+  const int type = ArrayTypes[bytes.Below(13)]; // the types of numbers
   const auto values = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
   values->SetName(kinds & 2 ? "density" : nullptr);
   values->SetNumberOfComponents(1 + (kinds >> 2) % 3);

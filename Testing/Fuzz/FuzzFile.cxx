@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// vtkZFPReader on any file; what it reads goes through vtkZFPWriter and back.
+// Runs vtkZFPReader on any file. What it reads must survive vtkZFPWriter and reading it again.
 #include "FuzzTools.h"
 
 #include <vtkImageZFPDecompress.h>

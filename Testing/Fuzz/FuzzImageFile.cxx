@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A compressed volume's .vti file with other values in it, read by VTK's reader. What that makes of
-// a file which is no XML, or says that an array has a billion values, is VTK's: the values change.
+// Reads a compressed volume's .vti file, with other values in it, by VTK's reader. Only values
+// change: how VTK reads a file that is not XML, or announces a billion values, is not tested here.
 #include "HostileImage.h"
 
 #include <vtkImageZFPDecompress.h>
@@ -16,8 +16,8 @@ namespace
 using namespace fuzz;
 
 //------------------------------------------------------------------------------
-// Whether a character is a digit of an array's values, and not of text, whose end VTK's reader
-// takes on trust.
+// Whether a character is a digit of an array's values, and not of text, whose end VTK's reader does
+// not check.
 bool IsDigitOfValue(const std::string& text, std::size_t at)
 {
   const std::size_t tag = text.rfind('<', at);
@@ -28,7 +28,7 @@ bool IsDigitOfValue(const std::string& text, std::size_t at)
 }
 
 //------------------------------------------------------------------------------
-// Replaces digits of the values of arrays, from somewhere on.
+// Replaces digits of the values of arrays from some position on.
 void ChangeValues(std::string& text, Bytes& bytes)
 {
   const std::string characters = "0123456789-+.eEnaif ";

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the fuzz targets share: values made of a fuzzer's bytes, and checks that end the program.
-// A target is LLVMFuzzerTestOneInput(): libFuzzer calls it, or Replay.cxx with the kept inputs.
+// Tools of the fuzz targets: values from a fuzzer's bytes, and checks that end the program.
+// A target is LLVMFuzzerTestOneInput(), which libFuzzer calls, or Replay.cxx with the kept inputs.
 #ifndef FuzzTools_h
 #define FuzzTools_h
 
@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 namespace fuzz
 {
-// A failed check is a finding: the fuzzer keeps the input.
+// Ends the program if a check fails, so that the fuzzer keeps the input.
 #define CHECK(condition, description)                                                              \
   do                                                                                               \
   {                                                                                                \
@@ -35,7 +35,7 @@ namespace fuzz
   } while (false)
 
 //------------------------------------------------------------------------------
-// Takes values from bytes; zeros when they have run out.
+// Takes values from bytes; returns zeros after the last byte.
 class Bytes
 {
 public:
@@ -64,13 +64,13 @@ public:
   int Byte() { return this->Take<std::uint8_t>(); }
   bool Flag() { return this->Byte() % 2 == 1; }
 
-  // in [0, count), count <= 65536
+  // Returns a number in [0, count); count <= 65536.
   int Below(int count)
   {
     return (count <= 256 ? this->Byte() : static_cast<int>(this->Take<std::uint16_t>())) % count;
   }
 
-  // small ones, those at the ends of types, and any
+  // Returns a small number, one at the limits of a type, or any.
   vtkTypeInt64 Integer()
   {
     const vtkTypeInt64 most32 = std::numeric_limits<std::int32_t>::max();
@@ -84,14 +84,14 @@ public:
     }
     if (choice < 240)
     {
-      // next to an edge; unsigned, for it may wrap
+      // next to a limit; unsigned, because it may wrap
       return static_cast<vtkTypeInt64>(static_cast<vtkTypeUInt64>(edges[choice % 10]) +
         static_cast<vtkTypeUInt64>(this->Take<std::int8_t>() % 8));
     }
     return this->Take<vtkTypeInt64>();
   }
 
-  // small ones, those at the ends of the type, and any
+  // Returns a small number, one at the limits of the type, or any.
   double Number()
   {
     using Limits = std::numeric_limits<double>;
@@ -107,7 +107,7 @@ public:
     return choice < 240 ? edges[choice % 16] : this->Take<double>();
   }
 
-  // a stream: what is left of the bytes, over and over
+  // Fills memory with the remaining bytes, repeated.
   void Fill(unsigned char* target, std::size_t count)
   {
     std::size_t done = std::min(this->Left(), count);
@@ -128,7 +128,7 @@ private:
 };
 
 //------------------------------------------------------------------------------
-// A file in memory, with a name that it can be opened by.
+// A file in memory, with a name to open it.
 class File
 {
 public:
@@ -151,7 +151,7 @@ private:
 };
 
 //------------------------------------------------------------------------------
-// Takes the texts that nobody observes.
+// Discards the messages that no observer takes.
 class SilentWindow : public vtkOutputWindow
 {
 public:
@@ -162,7 +162,8 @@ public:
 vtkStandardNewMacro(SilentWindow);
 
 //------------------------------------------------------------------------------
-// Updates an algorithm: true, or exactly one error and nothing else.
+// Updates an algorithm. Returns whether it succeeded; otherwise checks that there is exactly one
+// error.
 inline bool Update(vtkAlgorithm* algorithm)
 {
   const test::Errors errors(algorithm);

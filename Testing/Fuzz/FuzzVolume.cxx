@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// vtkCompressedVolume::Read() on field data in any state, and all that works on what it accepts:
-// decompressing, contouring, cutting out, storing again.
+// Runs vtkCompressedVolume::Read() on field data in any state, and decompresses, contours, crops
+// and writes what it accepts.
 #include "HostileImage.h"
 
 #include <vtkFlyingEdges3D.h>
@@ -30,7 +30,7 @@ vtkDataArray* SamplesOf(vtkImageData* image)
 }
 
 //------------------------------------------------------------------------------
-// The extent of the samples: for cell data that of the cells.
+// Returns the extent of the samples: of points, or of cells.
 void SampleExtent(vtkCompressedVolume* volume, int extent[6])
 {
   volume->GetExtent(extent);
@@ -41,7 +41,7 @@ void SampleExtent(vtkCompressedVolume* volume, int extent[6])
 }
 
 //------------------------------------------------------------------------------
-// The whole stream's samples: those of an image of the stream's extent.
+// Decodes all samples of the stream, as those of an image with its extent.
 vtkSmartPointer<vtkImageData> DecompressWhole(vtkCompressedVolume* volume)
 {
   vtkNew<vtkImageData> image;
@@ -55,7 +55,7 @@ vtkSmartPointer<vtkImageData> DecompressWhole(vtkCompressedVolume* volume)
 }
 
 //------------------------------------------------------------------------------
-// A cut-out volume decodes to what the whole has there, bit for bit.
+// Checks that a cropped volume decodes to the same samples as the whole, bit for bit.
 void CheckCrop(vtkCompressedVolume* volume, vtkImageData* whole, Bytes& bytes)
 {
   int own[6], from[6], to[6];
@@ -106,7 +106,7 @@ void CheckContour(
   {
     contour->SetValue(i, bytes.Number());
   }
-  // the values of some samples, too, which rarely lie in between others
+  // the isovalues include samples, which are rarely between other samples
   auto* const samples = SamplesOf(whole);
   for (int i = 0; i < 1; ++i)
   {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A compressed volume of a fuzzer's bytes: one that is in order, but for some of its arrays.
+// A compressed volume from a fuzzer's bytes: valid, except for some of its arrays.
 #ifndef HostileImage_h
 #define HostileImage_h
 
@@ -18,7 +18,7 @@
 
 namespace fuzz
 {
-// The arrays of a compressed volume, and how many values each has.
+// The arrays of a compressed volume, and the number of values of each.
 struct FieldArray
 {
   const char* Name;
@@ -37,7 +37,7 @@ const int ArrayTypes[] = { VTK_INT, VTK_DOUBLE, VTK_LONG_LONG, VTK_UNSIGNED_CHAR
   VTK_UNSIGNED_LONG_LONG, VTK_ID_TYPE, VTK_BIT, VTK_STRING, VTK_VARIANT };
 constexpr int NumberOfArrayTypes = sizeof(ArrayTypes) / sizeof(*ArrayTypes);
 
-// Few enough for thousands of runs a second.
+// Returns dimensions small enough for thousands of runs a second.
 constexpr vtkIdType MostSamples = 6000;
 
 //------------------------------------------------------------------------------
@@ -50,7 +50,7 @@ inline void SetValue(vtkAbstractArray* array, vtkIdType index, Bytes& bytes)
 }
 
 //------------------------------------------------------------------------------
-// Of another type, or with another number of values, or both.
+// Makes an array of another type, or with another number of values, or both.
 inline void ReplaceArray(vtkFieldData* fields, const FieldArray& which, Bytes& bytes)
 {
   const int type = ArrayTypes[bytes.Below(NumberOfArrayTypes)];
@@ -75,7 +75,7 @@ inline void DamageStream(vtkUnsignedCharArray* stream, Bytes& bytes)
     stream->SetNumberOfValues(std::max<vtkIdType>(size - bytes.Below(64), 0));
     return;
   }
-  // at an odd address, as someone's NumPy array may be
+  // at an odd address, as memory of a NumPy array may be
   const int offset = bytes.Below(8);
   auto* const memory = static_cast<unsigned char*>(std::malloc(size + offset));
   std::memcpy(memory + offset, stream->GetPointer(0), size);
@@ -115,7 +115,7 @@ inline void DamageOne(vtkImageData* image, Bytes& bytes)
 }
 
 //------------------------------------------------------------------------------
-// Runs of blocks, as vtkBlockMask has them; now and then out of order, or beyond the last block.
+// Makes runs of blocks as in vtkBlockMask, sometimes in disorder or beyond the last block.
 inline void AddHidden(vtkFieldData* fields, const char* name, vtkTypeInt64 blocks, Bytes& bytes)
 {
   vtkNew<vtkTypeUInt64Array> runs;
@@ -133,7 +133,7 @@ inline void AddHidden(vtkFieldData* fields, const char* name, vtkTypeInt64 block
 }
 
 //------------------------------------------------------------------------------
-// Ghost marks, as many as there are cells or not.
+// Makes ghost flags, of which there may be more or fewer than cells.
 inline void AddGhosts(vtkDataSetAttributes* attributes, vtkIdType number, Bytes& bytes)
 {
   vtkNew<vtkUnsignedCharArray> ghosts;
@@ -177,7 +177,7 @@ void AddArray(vtkFieldData* fields, const char* name, const T* values, int count
 //------------------------------------------------------------------------------
 inline vtkSmartPointer<vtkImageData> HostileImage(Bytes& bytes)
 {
-  // what the image and its parts are like; then sizes
+  // first the properties of the image and its parts, then sizes
   const int kinds = bytes.Byte();
   const int association = kinds & 1;
   int dims[3], extent[6];
@@ -195,7 +195,7 @@ inline vtkSmartPointer<vtkImageData> HostileImage(Bytes& bytes)
     extent[2 * axis + 1] =
       static_cast<int>(std::min<vtkTypeInt64>(end, std::numeric_limits<int>::max()));
   }
-  // masks and units are more than the first version has
+  // version 1 has neither masks nor units
   const int hidden = bytes.Below(8), version = 1 + (hidden != 0), blockBits = 9 + bytes.Below(2040),
             type = VTK_FLOAT, component = 0;
   const double range[2] = { -1.0, 1.0 };
@@ -230,7 +230,7 @@ inline vtkSmartPointer<vtkImageData> HostileImage(Bytes& bytes)
     AddArray<vtkDoubleArray>(fields, "ProgIso.ZFP.Offset", &offset, 1);
     AddArray<vtkDoubleArray>(fields, "ProgIso.ZFP.Scale", &scale, 1);
   }
-  if (kinds & 4) // a piece: the image is a part of what the stream covers
+  if (kinds & 4) // a piece: the stream covers more than the image
   {
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -240,7 +240,8 @@ inline vtkSmartPointer<vtkImageData> HostileImage(Bytes& bytes)
         static_cast<vtkTypeInt64>(extent[2 * axis + 1]) - bytes.Below(dims[axis]);
       const vtkTypeInt64 most = std::numeric_limits<int>::max();
       extent[2 * axis] = static_cast<int>(std::min(start, most));
-      extent[2 * axis + 1] = static_cast<int>(std::max(end, start - 1)); // VTK's least
+      extent[2 * axis + 1] =
+        static_cast<int>(std::max(end, start - 1)); // the least that VTK allows
     }
   }
   image->SetExtent(extent);

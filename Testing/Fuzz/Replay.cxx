@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Runs a fuzz target on the files of a folder, with any compiler: the kept corpus as a test.
+// Runs a fuzz target on the files of a folder, so that any compiler can test the kept corpus.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -34,7 +34,8 @@ int main(int argc, char** argv)
   std::sort(files.begin(), files.end());
   for (const auto& name : files)
   {
-    std::cout << name.filename().string() << std::endl; // the last one named is the one that failed
+    std::cout << name.filename().string()
+              << std::endl; // so that the last name is that of a failure
     std::ifstream file(name, std::ios::binary);
     const std::vector<char> bytes{ std::istreambuf_iterator<char>(file), {} };
     LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
