@@ -216,6 +216,23 @@ TEST_F(Shaders, CompileWithTheAccessOfTheTable)
   }
 }
 
+// As in contexts older than 4.3, such as those that VTK asks EGL for.
+TEST_F(Shaders, CompileWithExtensions)
+{
+  for (const StageInfo& stage : PipelineStages())
+  {
+    for (const PipelineExtent& extent : Extents())
+    {
+      if (IsNeeded(stage, extent))
+      {
+        const AssembledShader source =
+          AssembleShader(stage, stage.File, BoundBuffers(stage, extent), extent, true);
+        EXPECT_EQ(Compile(stage, source), "") << stage.Name;
+      }
+    }
+  }
+}
+
 TEST_F(Shaders, NeedAllTheAccessOfTheTable)
 {
   for (const StageInfo& stage : PipelineStages())
