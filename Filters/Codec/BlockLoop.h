@@ -67,6 +67,23 @@ enum class StreamAccess
   Write
 };
 
+/// Calls the body of ForEachBlock() for the blocks [first, last).
+template <typename Body>
+void VisitBlocks(const BlockStream& blocks, vtkTypeInt64 first, vtkTypeInt64 last,
+  StreamAccess access, BlockCodec& codec, SampleSummary& summary, const Body& body)
+{
+  access == StreamAccess::Write ? codec.SeekToWrite(first) : codec.SeekToRead(first);
+  BlockStream::Block block = blocks.GetBlock(first);
+  for (vtkTypeInt64 index = first; index < last; ++index, blocks.GoToNext(block))
+  {
+    body(codec.GetStream(), block, summary);
+  }
+  if (access == StreamAccess::Write)
+  {
+    codec.Flush();
+  }
+}
+
 /**
  * Calls body(zfp stream positioned at the block, block, summary of the thread) for all blocks of
  * some slabs, in parallel, and adds the threads' summaries to `summary`. Each thread begins with
@@ -103,16 +120,7 @@ bool ForEachBlock(const BlockStream& blocks, SlabRange slabs, StreamAccess acces
       // slabs may begin and end inside a group: then the seek completes its first word
       const vtkTypeInt64 from = std::max(begin, group * GroupSize);
       const vtkTypeInt64 to = std::min(end, (group + 1) * GroupSize);
-      access == StreamAccess::Write ? codec.SeekToWrite(from) : codec.SeekToRead(from);
-      BlockStream::Block block = blocks.GetBlock(from);
-      for (vtkTypeInt64 index = from; index < to; ++index, blocks.GoToNext(block))
-      {
-        body(codec.GetStream(), block, mine);
-      }
-      if (access == StreamAccess::Write)
-      {
-        codec.Flush();
-      }
+      VisitBlocks(blocks, from, to, access, codec, mine, body);
       const double fraction = static_cast<double>(++done) / (lastGroup - firstGroup);
       if (omp_get_thread_num() == 0 && fraction - reported >= ReportedStep)
       {
