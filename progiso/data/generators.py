@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from .._typing import Progress
+from ..compression import checked_rate
 from ..io import save
 from ..io.files import atomic_path, check_output
 from ..io.raw import raw_name
@@ -156,10 +157,9 @@ def generate_compressed(
     ValueError
         When the size, the rate or an option is unknown or out of range.
     """
-    if not 0 < rate <= 32:
-        raise ValueError(f"rate must be in (0, 32] bits per sample, got {rate:g}")
+    digits = _digits(checked_rate(rate))
     name, dimensions, slice_at = _sampled(generator, size, options)
-    path = Path(folder) / f"{name}_{'x'.join(map(str, dimensions))}_rate{_digits(rate)}.zfp"
+    path = Path(folder) / f"{name}_{'x'.join(map(str, dimensions))}_rate{digits}.zfp"
     if not path.is_file():
         check_output(path)
         save(compress_slabs(slice_at, dimensions, rate=rate, name=name, progress=progress), path)
