@@ -532,7 +532,7 @@ bool vtkProgressiveIsosurfaceMapper::GetHit(int x, int y, double position[3], do
   // the key of a translucent image is that of its last hit
   const double t = scene.Translucent ? hit.Depth : HitParameter(view, x, y, hit.Key);
   impl.View.FindPosition(x, y, t, position);
-  const glsl::Isovalue& stored = view.Isovalues[hit.Isovalue];
+  const glsl::FloatSum& stored = view.Isovalues[hit.Isovalue];
   isovalue = impl.Inputs.GetValues().GetVolume()->ToSample(double(stored.High) + stored.Low);
   return true;
 }

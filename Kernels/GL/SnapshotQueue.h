@@ -6,7 +6,7 @@
 #define SnapshotQueue_h
 
 #include "GL/ProgIsoGL.h"
-#include "Shaders/BufferTable.h"
+#include "Shaders/Glsl.h"
 
 #include <cstdint>
 #include <deque>
@@ -16,8 +16,8 @@ class Context;
 
 struct Snapshot
 {
-  ControlBlock Control;
-  PassRecord Records[PassRecords];
+  glsl::Control Control;
+  glsl::PassRecord Records[glsl::PASS_RECORDS];
 };
 
 class SnapshotQueue

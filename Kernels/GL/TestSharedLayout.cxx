@@ -94,7 +94,64 @@ const Members BlockMembers = {
   MEMBER(Palette, Padding0), MEMBER(Palette, Padding1),
   ELEMENTS(Palette, Colors, Rgb), ELEMENTS(Palette, Colors, Padding0),
 };
+
+// Of storage buffers: offsets in a block, or in an element of the array that a buffer is.
+#define VARIABLE(prefix, structure, member) \
+  { prefix #member, offsetof(glsl::structure, member) }
+#define DISPATCH(member) \
+  VARIABLE("Control.", Control, member.X), VARIABLE("Control.", Control, member.Y), \
+    VARIABLE("Control.", Control, member.Z), VARIABLE("Control.", Control, member.Padding0)
+
+const std::map<std::string, std::size_t> StorageMembers = {
+  VARIABLE("Control.", Control, Rays), VARIABLE("Control.", Control, WaitingRays),
+  VARIABLE("Control.", Control, NextWaitingRays), VARIABLE("Control.", Control, Queue),
+  VARIABLE("Control.", Control, FirstNewRay), VARIABLE("Control.", Control, Frontier),
+  VARIABLE("Control.", Control, Window), VARIABLE("Control.", Control, FirstLive),
+  VARIABLE("Control.", Control, PendingHits), VARIABLE("Control.", Control, PostponedHits),
+  VARIABLE("Control.", Control, PassSerial), VARIABLE("Control.", Control, ImageSerial),
+  VARIABLE("Control.", Control, PassIndex), VARIABLE("Control.", Control, NewImage),
+  VARIABLE("Control.", Control, ActiveRays), VARIABLE("Control.", Control, Pairs),
+  VARIABLE("Control.", Control, Requests), VARIABLE("Control.", Control, DeniedRequests),
+  VARIABLE("Control.", Control, VisibleBlocks), VARIABLE("Control.", Control, ActiveBlocks),
+  VARIABLE("Control.", Control, TouchedSlots), VARIABLE("Control.", Control, FreeSlotsBegin),
+  VARIABLE("Control.", Control, FreeSlots), VARIABLE("Control.", Control, ReturnedSlots),
+  VARIABLE("Control.", Control, FreePagesBegin), VARIABLE("Control.", Control, FreePages),
+  VARIABLE("Control.", Control, TakenPages), VARIABLE("Control.", Control, EvictWanted),
+  VARIABLE("Control.", Control, EvictByPages), VARIABLE("Control.", Control, Evicted),
+  VARIABLE("Control.", Control, DeniedRequestsBefore),
+  VARIABLE("Control.", Control, ContinuingRays), VARIABLE("Control.", Control, NextContinuingRays),
+  VARIABLE("Control.", Control, Padding0), VARIABLE("Control.", Control, Padding1),
+  VARIABLE("Control.", Control, Padding2), DISPATCH(CastGroups), DISPATCH(StragglerGroups),
+  DISPATCH(FinishGroups), DISPATCH(RequestGroups), DISPATCH(DecodeGroups), DISPATCH(EvictGroups),
+  VARIABLE("Control.", Control, Ages[0]),
+
+  VARIABLE("passRecords[0].", PassRecord, ActiveRays),
+  VARIABLE("passRecords[0].", PassRecord, Speculation),
+  VARIABLE("passRecords[0].", PassRecord, Pairs),
+  VARIABLE("passRecords[0].", PassRecord, VisibleBlocks),
+  VARIABLE("passRecords[0].", PassRecord, ActiveBlocks),
+  VARIABLE("passRecords[0].", PassRecord, DecodedBlocks),
+  VARIABLE("passRecords[0].", PassRecord, CachedBlocks),
+  VARIABLE("passRecords[0].", PassRecord, RemainingRays),
+  VARIABLE("passRecords[0].", PassRecord, RefusedBlocks),
+  VARIABLE("passRecords[0].", PassRecord, TouchedSlots),
+  VARIABLE("passRecords[0].", PassRecord, Padding0),
+  VARIABLE("passRecords[0].", PassRecord, Padding1),
+
+  VARIABLE("macrocells[0].", Macrocell, Low), VARIABLE("macrocells[0].", Macrocell, High),
+  VARIABLE("macrocells[0].", Macrocell, Page), VARIABLE("macrocells[0].", Macrocell, Requested[0]),
+  VARIABLE("macrocells[0].", Macrocell, Ranges[0]),
+
+  VARIABLE("mapPages[0].", MapPage, Owner), VARIABLE("mapPages[0].", MapPage, Stamp),
+  VARIABLE("mapPages[0].", MapPage, Used), VARIABLE("mapPages[0].", MapPage, Free),
+  VARIABLE("mapPages[0].", MapPage, Slots[0]),
+};
 // clang-format on
+
+// Bytes of an element of the arrays that buffers are.
+const std::map<std::string, std::size_t> ElementBytes = { { "passRecords",
+                                                            sizeof(glsl::PassRecord) },
+  { "macrocells", sizeof(glsl::Macrocell) }, { "mapPages", sizeof(glsl::MapPage) } };
 
 struct Block
 {
@@ -247,6 +304,49 @@ TEST_F(SharedLayout, UniformBlocksHaveTheSizesAndBindingsOfCxx)
     }
   }
   EXPECT_EQ(seen.size(), Blocks.size());
+}
+
+TEST_F(SharedLayout, StorageBuffersLieAsInCxx)
+{
+  std::set<std::string> seen;
+  for (const auto& [stage, program] : this->Build(EverythingNeeded(true)))
+  {
+    for (GLuint i = 0; i < CountOf(program, GL_BUFFER_VARIABLE); ++i)
+    {
+      const std::string name = NameOf(program, GL_BUFFER_VARIABLE, i);
+      if (name.find('.') == std::string::npos)
+      {
+        continue; // plain numbers
+      }
+      const auto found = StorageMembers.find(name);
+      ASSERT_NE(found, StorageMembers.end()) << stage << ": enter " << name << " in StorageMembers";
+      const std::vector<GLint> answers =
+        Ask(program, GL_BUFFER_VARIABLE, i, { GL_OFFSET, GL_TOP_LEVEL_ARRAY_STRIDE });
+      EXPECT_EQ(answers[0], found->second) << stage << ": " << name;
+      const auto element = ElementBytes.find(name.substr(0, name.find('[')));
+      if (element != ElementBytes.end())
+      {
+        EXPECT_EQ(answers[1], element->second) << stage << ": " << name;
+      }
+      seen.insert(name);
+    }
+  }
+  for (const auto& [name, offset] : StorageMembers)
+  {
+    EXPECT_TRUE(seen.count(name)) << name << " is in no program";
+  }
+}
+
+TEST_F(SharedLayout, MacrocellsWithoutACacheAreAsLargeAsTheTableSays)
+{
+  const PipelineExtent extent = EverythingNeeded(false);
+  const GLuint program = this->Build(extent)["CastRays"];
+  const GLuint ranges =
+    glGetProgramResourceIndex(program, GL_BUFFER_VARIABLE, "macrocells[0].Ranges[0]");
+  const std::vector<GLint> answers =
+    Ask(program, GL_BUFFER_VARIABLE, ranges, { GL_TOP_LEVEL_ARRAY_STRIDE });
+  const BufferInfo& info = PipelineBuffers()[static_cast<std::size_t>(Buffer::Macrocells)];
+  EXPECT_EQ(answers[0], info.Bytes(extent));
 }
 
 // Blocks are compared and copied byte by byte.

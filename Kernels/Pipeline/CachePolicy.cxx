@@ -20,7 +20,7 @@ std::int64_t CachePolicy::SlotsAtFirst(std::int64_t pixels, std::int64_t maximum
 }
 
 std::int64_t CachePolicy::SlotsAfterPass(
-  const PassRecord& pass, std::int64_t slots, std::int64_t pixels, std::int64_t maximumSlots)
+  const glsl::PassRecord& pass, std::int64_t slots, std::int64_t pixels, std::int64_t maximumSlots)
 {
   const std::int64_t needed = std::int64_t(pass.TouchedSlots) + pass.RefusedBlocks;
   const bool small = slots < pixels && needed > slots;

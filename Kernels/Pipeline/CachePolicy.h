@@ -7,6 +7,7 @@
 #define CachePolicy_h
 
 #include "Shaders/BufferTable.h"
+#include "Shaders/Glsl.h"
 
 #include <cstdint>
 #include <deque>
@@ -20,8 +21,8 @@ public:
   /// A cache with fewer slots than pixels grows as soon as a pass needs more. A larger one only
   /// doubles, and only after several passes in a row were denied blocks: up to then eviction helps,
   /// and another pass costs less than memory. Returns `slots` where it stays as it is.
-  std::int64_t SlotsAfterPass(
-    const PassRecord& pass, std::int64_t slots, std::int64_t pixels, std::int64_t maximumSlots);
+  std::int64_t SlotsAfterPass(const glsl::PassRecord& pass, std::int64_t slots, std::int64_t pixels,
+    std::int64_t maximumSlots);
 
   /// A cache that the last images left mostly unused shrinks, but not as far that it would soon
   /// grow again.

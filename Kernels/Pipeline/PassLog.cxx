@@ -13,7 +13,7 @@ void PassLog::StartImage(std::int64_t pixels)
   this->RemainingRays = pixels;
 }
 
-const PassRecord* PassLog::AddKnown(const Snapshot& snapshot)
+const glsl::PassRecord* PassLog::AddKnown(const Snapshot& snapshot)
 {
   ++this->Known;
   const std::size_t total = snapshot.Control.PassIndex;
@@ -22,7 +22,7 @@ const PassRecord* PassLog::AddKnown(const Snapshot& snapshot)
     return nullptr;
   }
   TimedPass pass;
-  static_cast<PassRecord&>(pass) = snapshot.Records[(total - 1) % PassRecords];
+  static_cast<glsl::PassRecord&>(pass) = snapshot.Records[(total - 1) % glsl::PASS_RECORDS];
   const bool progress =
     pass.Pairs > 0 || pass.DecodedBlocks > 0 || pass.RemainingRays != this->RemainingRays;
   this->PassesWithoutProgress = progress ? 0 : this->PassesWithoutProgress + 1;

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-struct TimedPass : PassRecord
+struct TimedPass : glsl::PassRecord
 {
   double ElapsedMilliseconds = 0.0; ///< from the start of the image to the end of the pass
 };
@@ -20,7 +20,7 @@ public:
   void StartImage(std::int64_t pixels);
   void AddSubmitted() { ++this->Submitted; }
   /// Records the next submitted pass. Returns null where it had nothing to do.
-  const PassRecord* AddKnown(const Snapshot& snapshot);
+  const glsl::PassRecord* AddKnown(const Snapshot& snapshot);
   /// One pass, submitted but not known yet, completes the image.
   void AssumeComplete() { this->RemainingRays = 0; }
   /// The image is complete: passes still to come have nothing to do.

@@ -57,8 +57,8 @@ Status ProgressivePipeline::Initialize(std::uint64_t contextId)
   {
     return made;
   }
-  ControlBlock control = {};
-  for (DispatchArguments* groups :
+  glsl::Control control = {};
+  for (glsl::Dispatch* groups :
     { &control.CastGroups, &control.StragglerGroups, &control.FinishGroups, &control.RequestGroups,
       &control.DecodeGroups, &control.EvictGroups })
   {
@@ -339,7 +339,7 @@ void ProgressivePipeline::Start()
   this->ClearImage();
   const std::uint32_t yes = 1;
   this->Gpu->Transfer.Write(this->Gpu->Buffers.GetName(Buffer::Control),
-    offsetof(ControlBlock, NewImage), &yes, sizeof(yes));
+    offsetof(glsl::Control, NewImage), &yes, sizeof(yes));
   if (this->CheckMemory()) // else the stages may never come to an end
   {
     this->Gpu->Dispatch(Stage::PlanPass, 1);
@@ -432,7 +432,7 @@ void ProgressivePipeline::RunPasses(int maximum, bool eager, const std::function
 // Learns what the next of the submitted passes did.
 void ProgressivePipeline::AwaitPass()
 {
-  const PassRecord* pass = this->Log.AddKnown(this->Gpu->Snapshots.Await());
+  const glsl::PassRecord* pass = this->Log.AddKnown(this->Gpu->Snapshots.Await());
   if (pass && this->Log.GetKnown() > this->PassesBeforeCache)
   {
     const std::int64_t slots = this->Policy.SlotsAfterPass(

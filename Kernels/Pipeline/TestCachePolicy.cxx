@@ -10,9 +10,9 @@ constexpr std::int64_t Pixels = 100000;
 constexpr std::int64_t Maximum = 1000000; // slots
 
 // A pass that used so many slots and was denied so many blocks.
-PassRecord Pass(std::uint32_t touched, std::uint32_t denied)
+glsl::PassRecord Pass(std::uint32_t touched, std::uint32_t denied)
 {
-  PassRecord pass = {};
+  glsl::PassRecord pass = {};
   pass.TouchedSlots = touched;
   pass.RefusedBlocks = denied;
   return pass;
@@ -65,7 +65,7 @@ TEST(CachePolicy, SmallCacheWithRoomLeftGrowsOnlyWhenDeniedAgainAndAgain)
 TEST(CachePolicy, LargeCacheDoublesAfterFourDenialsInARow)
 {
   CachePolicy policy;
-  const PassRecord denied = Pass(Pixels, 5000);
+  const glsl::PassRecord denied = Pass(Pixels, 5000);
   for (int pass = 0; pass < 3; ++pass)
   {
     EXPECT_EQ(policy.SlotsAfterPass(denied, Pixels, Pixels, Maximum), Pixels);

@@ -11,7 +11,7 @@ Snapshot After(std::uint32_t passes, std::uint32_t remainingRays)
 {
   Snapshot snapshot = {};
   snapshot.Control.PassIndex = passes;
-  snapshot.Records[(passes - 1) % PassRecords].RemainingRays = remainingRays;
+  snapshot.Records[(passes - 1) % glsl::PASS_RECORDS].RemainingRays = remainingRays;
   return snapshot;
 }
 }
@@ -59,12 +59,12 @@ TEST(PassLog, RecordsAreARing)
 {
   PassLog log;
   log.StartImage(500);
-  for (std::uint32_t pass = 1; pass <= PassRecords + 2; ++pass)
+  for (std::uint32_t pass = 1; pass <= glsl::PASS_RECORDS + 2; ++pass)
   {
     log.AddSubmitted();
     log.AddKnown(After(pass, 500 - pass));
   }
-  EXPECT_EQ(log.GetPasses()[PassRecords + 1].RemainingRays, 500u - PassRecords - 2);
+  EXPECT_EQ(log.GetPasses()[glsl::PASS_RECORDS + 1].RemainingRays, 500u - glsl::PASS_RECORDS - 2);
 }
 
 TEST(PassLog, IsStuckAfter64PassesWithoutProgress)
@@ -79,7 +79,7 @@ TEST(PassLog, IsStuckAfter64PassesWithoutProgress)
   }
   EXPECT_TRUE(log.IsStuck());
   Snapshot progress = After(65, 500);
-  progress.Records[64 % PassRecords].DecodedBlocks = 1;
+  progress.Records[64 % glsl::PASS_RECORDS].DecodedBlocks = 1;
   log.AddSubmitted();
   log.AddKnown(progress);
   EXPECT_FALSE(log.IsStuck());

@@ -104,7 +104,7 @@ void TranslateIsovalues(
   for (count = 0; count < glsl::MAX_ISOVALUES && count < static_cast<int>(shown.size()); ++count)
   {
     const double stored = volume->ToStored(shown[count].Value);
-    glsl::Isovalue& isovalue = scene.View.Isovalues[count];
+    glsl::FloatSum& isovalue = scene.View.Isovalues[count];
     isovalue.High = static_cast<float>(stored);
     isovalue.Low = static_cast<float>(stored - isovalue.High);
     double color[3];

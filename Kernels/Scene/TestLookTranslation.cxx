@@ -67,7 +67,7 @@ TEST_F(LookTranslation, IsovaluesComeInTheUnitsOfTheStream)
   ASSERT_EQ(this->Scene.View.NumberOfIsovalues, 3);
   for (int i = 0; i < 3; ++i)
   {
-    const glsl::Isovalue& isovalue = this->Scene.View.Isovalues[i];
+    const glsl::FloatSum& isovalue = this->Scene.View.Isovalues[i];
     EXPECT_EQ(double(isovalue.High) + isovalue.Low, (i + 2.0 + 1e8) * 8.0);
   }
   EXPECT_TRUE(this->Scene.Translucent);

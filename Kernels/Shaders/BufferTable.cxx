@@ -2,16 +2,39 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Shaders/BufferTable.h"
 
+#include "Shaders/Glsl.h"
+
+#include <cstddef>
+
+namespace
+{
+// A macrocell knows of the cache only where there is one.
+constexpr std::int64_t CacheBytesOfMacrocell =
+  offsetof(glsl::Macrocell, Ranges) - offsetof(glsl::Macrocell, Page);
+
+std::int64_t BytesOfMacrocell(const PipelineExtent& extent)
+{
+  const std::int64_t bytes = sizeof(glsl::Macrocell);
+  return extent.Cached ? bytes : bytes - CacheBytesOfMacrocell;
+}
+
+// Bytes of a block's samples.
+constexpr std::int64_t BytesOfBlock = glsl::SAMPLES_PER_BLOCK * sizeof(float);
+// Bytes that tell which cells of a block are hidden: a row of the buffer of decoded samples.
+constexpr std::int64_t BytesOfHiddenRow = glsl::BLOCK_SIDE * sizeof(float);
+}
+
 const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers()
 {
   using E = PipelineExtent;
   using namespace Conditions;
   static const std::array<BufferInfo, NumberOfBuffers> buffers = { {
     { Buffer::Control, "control", "CONTROL", Lifetime::Pipeline, Always, "about 1 KB",
-      [](const E&) -> std::int64_t { return sizeof(ControlBlock); }, Access::ReadWrite,
+      [](const E&) -> std::int64_t { return sizeof(glsl::Control); }, Access::ReadWrite,
       "what the pass does and has done: counts, dispatch sizes, the cache's rings" },
     { Buffer::PassStatistics, "pass_statistics", "PASS_STATISTICS", Lifetime::Pipeline, Always,
-      "3 KB", [](const E&) -> std::int64_t { return PassRecords * sizeof(PassRecord); },
+      "3 KB",
+      [](const E&) -> std::int64_t { return glsl::PASS_RECORDS * sizeof(glsl::PassRecord); },
       Access::Read, "ring of the last passes' records" },
     { Buffer::Stream, "compressed", "STREAM", Lifetime::Volume, Always, "the ZFP stream",
       [](const E&) -> std::int64_t { return 0; }, // it has segments of its own: StreamStore
@@ -23,9 +46,7 @@ const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers()
       "likewise, of the volume that gives the colours" },
     { Buffer::Macrocells, "macrocells", "MACROCELLS", Lifetime::Volume, Always,
       "2.1 *B*, with a cache 2.3 *B*",
-      // range of values, 2 bytes for each of 64 blocks; map page and a bit for each block
-      [](const E& e) { return (8 + 2 * 64 + (e.Cached ? 4 + 64 / 8 : 0)) * e.Macrocells; },
-      Access::None,
+      [](const E& e) { return BytesOfMacrocell(e) * e.Macrocells; }, Access::None,
       "ranges of values of macrocells and their blocks; with a cache the map page, "
       "and which blocks are requested" },
     { Buffer::HiddenCells, "hidden_cells", "HIDDEN_CELLS", Lifetime::Volume, Hidden,
@@ -48,7 +69,7 @@ const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers()
       [](const E& e) { return BytesPerSlot(e) * e.Slots; }, Access::Read,
       "decoded samples, and which of their cells are hidden" },
     { Buffer::CacheMap, "cache_map", "CACHE_MAP", Lifetime::Cache, Cached, "about 34 *S*",
-      [](const E& e) { return (16 + 4 * 64) * e.Pages; }, Access::None,
+      [](const E& e) -> std::int64_t { return sizeof(glsl::MapPage) * e.Pages; }, Access::None,
       "map pages: the cache slots of a macrocell's blocks" },
     { Buffer::CacheFreeSlots, "cache_free_slots", "CACHE_FREE_SLOTS", Lifetime::Cache, Cached,
       "8 *S*", [](const E& e) { return 2 * 4 * e.Slots; }, Access::None,
@@ -64,7 +85,7 @@ const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers()
 
 std::int64_t BytesPerSlot(const PipelineExtent& extent)
 {
-  return (extent.Colored ? 2 * 256 : 256) + (extent.HiddenWords > 0 ? 16 : 0);
+  return (extent.Colored ? 2 : 1) * BytesOfBlock + (extent.HiddenWords > 0 ? BytesOfHiddenRow : 0);
 }
 
 std::int64_t BytesOf(Lifetime lifetime, const PipelineExtent& extent)

@@ -87,34 +87,4 @@ std::int64_t BytesPerSlot(const PipelineExtent& extent);
 /// Bytes of all buffers of a lifetime.
 std::int64_t BytesOf(Lifetime lifetime, const PipelineExtent& extent);
 
-/// The host's view of `Control` and `PassRecord` in Buffers.glsl.
-struct DispatchArguments
-{
-  std::uint32_t X, Y, Z, Pad;
-};
-
-struct ControlBlock
-{
-  std::uint32_t Rays, WaitingRays, NextWaitingRays, Queue;
-  std::uint32_t FirstNewRay, Frontier, Window, FirstLive;
-  std::uint32_t PendingHits, PostponedHits, PassSerial, ImageSerial;
-  std::uint32_t PassIndex, NewImage, ActiveRays, Pairs;
-  std::uint32_t Requests, DeniedRequests, VisibleBlocks, ActiveBlocks;
-  std::uint32_t TouchedSlots, FreeSlotsBegin, FreeSlots, ReturnedSlots;
-  std::uint32_t FreePagesBegin, FreePages, TakenPages, EvictWanted;
-  std::uint32_t EvictByPages, Evicted, DeniedRequestsBefore, ContinuingRays;
-  std::uint32_t NextContinuingRays, Pad[3];
-  DispatchArguments CastGroups, StragglerGroups, FinishGroups;
-  DispatchArguments RequestGroups, DecodeGroups, EvictGroups;
-  std::uint32_t Ages[256];
-};
-
-struct PassRecord
-{
-  std::uint32_t ActiveRays, Speculation, Pairs, VisibleBlocks;
-  std::uint32_t ActiveBlocks, DecodedBlocks, CachedBlocks, RemainingRays;
-  std::uint32_t RefusedBlocks, TouchedSlots, Pad[2];
-};
-constexpr std::int64_t PassRecords = 64; ///< ring of the last passes' records
-
 #endif

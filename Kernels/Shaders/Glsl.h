@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
-// What C++ shares with GLSL: constants, and uniform blocks as structures of the same layout.
+// What C++ shares with GLSL: constants, and structures of the same layout as uniform blocks and the
+// contents of storage buffers.
 #ifndef Glsl_h
 #define Glsl_h
 
@@ -19,9 +20,17 @@ using ivec3 = std::int32_t[3];
 
 #define UNIFORM_BLOCK(name, number) struct name
 #define INSTANCE(name)
-#include "Shaders/Shared/SceneBlocks.glsl.h"
 #include "Shaders/Light/Palette.glsl.h"
+#include "Shaders/Shared/SceneBlocks.glsl.h"
 #include "Shaders/Store/Segment.glsl.h"
+
+#define STORAGE_BLOCK(name, declaration) struct name
+#define BUFFER_CONTROL
+#define HAS_CACHE_MAP
+#include "Shaders/Shared/BufferStructs.glsl.h"
+#undef HAS_CACHE_MAP
+#undef BUFFER_CONTROL
+#undef STORAGE_BLOCK
 #undef UNIFORM_BLOCK
 #undef INSTANCE
 }

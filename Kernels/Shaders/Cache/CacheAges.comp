@@ -14,7 +14,7 @@ void main()
   uint first = GROUP_SIZE * gl_WorkGroupID.x + lane;
   for (uint page = first; page < cache.MapPages; page += GROUP_SIZE * gl_NumWorkGroups.x)
   {
-    if (mapPages[page].Cell != NONE)
+    if (mapPages[page].Owner != NONE)
     {
       atomicAdd(groupAges[AgeOf(page)], UnitsOf(page));
     }

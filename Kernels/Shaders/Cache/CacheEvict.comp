@@ -22,7 +22,7 @@ void FindThreshold()
 
 bool ShouldEvict(uint page)
 {
-  if (mapPages[page].Cell == NONE)
+  if (mapPages[page].Owner == NONE)
   {
     return false;
   }
@@ -45,8 +45,8 @@ void Evict(uint page)
       ++to;
     }
   }
-  macrocells[mapPages[page].Cell].Page = NONE;
-  mapPages[page].Cell = NONE;
+  macrocells[mapPages[page].Owner].Page = NONE;
+  mapPages[page].Owner = NONE;
   uint free = control.FreePagesBegin + atomicAdd(control.FreePages, 1u);
   mapPages[free % cache.MapPages].Free = page;
 }

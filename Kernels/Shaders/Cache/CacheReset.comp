@@ -19,7 +19,7 @@ void main()
   }
   for (uint i = first; i < cache.MapPages; i += stride)
   {
-    mapPages[i].Cell = NONE;
+    mapPages[i].Owner = NONE;
     mapPages[i].Free = i;
   }
   const uint places = uint(BLOCKS_PER_MACROCELL);

@@ -19,7 +19,7 @@ uint TakePage(uint macrocell)
     return NONE;
   }
   uint page = mapPages[(control.FreePagesBegin + at) % cache.MapPages].Free;
-  mapPages[page].Cell = macrocell;
+  mapPages[page].Owner = macrocell;
   mapPages[page].Stamp = control.PassSerial;
   mapPages[page].Used = 0u;
   return page;

@@ -38,7 +38,7 @@ double BlockExit(Ray ray, ivec3 block)
 // Tells whether a range has a value below the isovalue and one that is not.
 bool StraddlesIsovalue(float low, float high, int number)
 {
-  Isovalue isovalue = view.Isovalues[number];
+  FloatSum isovalue = view.Isovalues[number];
   precise float below = (low - isovalue.High) - isovalue.Low;
   precise float above = (high - isovalue.High) - isovalue.Low;
   return below < 0.0 && above >= 0.0;
@@ -146,7 +146,7 @@ bool IsCroppedAway(ivec3 block)
 // The macrocell that a ray is in, so that its record is read once.
 struct GridCursor
 {
-  ivec3 Macrocell;
+  ivec3 Coordinates;
   uint Index;
   vec2 Range;
   bool Active; // the range holds an isovalue
@@ -159,7 +159,7 @@ GridCursor OutsideGrid()
 
 void MoveCursor(inout GridCursor at, ivec3 macrocell)
 {
-  at.Macrocell = macrocell;
+  at.Coordinates = macrocell;
   at.Index = MacrocellIndex(macrocell);
   at.Range = vec2(macrocells[at.Index].Low, macrocells[at.Index].High);
   at.Active = StraddlesAnyIsovalue(at.Range.x, at.Range.y);
@@ -189,7 +189,7 @@ bool FindActiveBlock(Ray ray, inout ivec3 block, inout GridCursor at)
   bool inside = true;
   while (inside)
   {
-    if (MacrocellOf(block) != at.Macrocell)
+    if (MacrocellOf(block) != at.Coordinates)
     {
       MoveCursor(at, MacrocellOf(block));
     }

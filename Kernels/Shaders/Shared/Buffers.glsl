@@ -5,69 +5,10 @@
 
 #include "Shared/Scene.glsl"
 
-#ifdef BUFFER_CONTROL
-// A dispatch whose size the GPU decides: three group counts and a pad.
-struct Dispatch
-{
-  uint X, Y, Z, Pad;
-};
-BUFFER_CONTROL Control
-{
-  // the rays of this pass: waiting ones, continuing ones, then new ones in tile order
-  uint Rays;
-  uint WaitingRays;     // for blocks, since the last pass
-  uint NextWaitingRays; // of the next pass
-  uint Queue;           // which of the two queues is this pass's, 0 or 1: see RayQueues.glsl
-  uint FirstNewRay;     // first pixel, in tile order, whose ray has not begun
-  uint Frontier;        // first pixel, in tile order, for whose ray the cache has no room: it waits
-  uint Window;          // pixels from the first live one to the frontier
-  uint FirstLive;       // least tile order of a live ray
-  uint PendingHits;     // of this pass, to be finished: given a normal or colour, or blended
-  uint PostponedHits;   // of these, such as have to wait for blocks: pending in the next pass
-  uint PassSerial;      // counts passes over the cache's whole life: the clock of the LRU
-  uint ImageSerial;     // first pass of this image
-  uint PassIndex;       // passes of this image
-  uint NewImage;        // set by the CPU: the next pass is the first of an image
-  // what the pass did
-  uint ActiveRays;     // rays that were cast, without those that miss the volume or wait
-  uint Pairs;         // ray-block pairs that were intersected
-  uint Requests;      // blocks asked for, each once
-  uint DeniedRequests; // of these, blocks for which the cache had no room
-  uint VisibleBlocks; // distinct blocks that were intersected; only for detailed statistics
-  uint ActiveBlocks;  // likewise, with the neighbours that rays reach into
-  uint TouchedSlots;  // cached blocks on map pages that this image used
-  // the cache: rings of free slots and of free map pages, where they begin and how many there are
-  uint FreeSlotsBegin;
-  uint FreeSlots;
-  uint ReturnedSlots; // taken for blocks that no map page could be found for
-  uint FreePagesBegin;
-  uint FreePages;
-  uint TakenPages;
-  uint EvictWanted;  // units to be freed: see PlanEviction in PlanCache.glsl
-  uint EvictByPages; // 1: a page counts as one unit; 0: as many as it has slots
-  uint Evicted;      // units of the threshold age freed so far
-  uint DeniedRequestsBefore; // of the pass before
-  uint ContinuingRays;     // the last pass's translucent hits, behind which rays may go on
-  uint NextContinuingRays; // rays that go on behind hits of this pass
-  uint ControlPad0, ControlPad1, ControlPad2;
-  Dispatch CastGroups;
-  Dispatch StragglerGroups; // of CastStragglers instead, when few rays are left
-  Dispatch FinishGroups;
-  Dispatch RequestGroups;
-  Dispatch DecodeGroups;
-  Dispatch EvictGroups;
-  uint Ages[PASS_AGES]; // units on pages by their ages, in passes
-}
-control;
-#endif
+#define STORAGE_BLOCK(name, declaration) declaration name
+#include "Shared/BufferStructs.glsl.h"
 
 #ifdef BUFFER_PASS_STATISTICS
-struct PassRecord
-{
-  uint ActiveRays, Speculation, Pairs, VisibleBlocks;
-  uint ActiveBlocks, DecodedBlocks, CachedBlocks, RemainingRays;
-  uint RefusedBlocks, TouchedSlots, Pad0, Pad1;
-};
 BUFFER_PASS_STATISTICS PassStatistics { PassRecord passRecords[]; };
 #endif
 
@@ -76,16 +17,6 @@ BUFFER_PASS_STATISTICS PassStatistics { PassRecord passRecords[]; };
 BUFFER_STREAM StreamBuffer { uint stream[]; };
 #endif
 #ifdef BUFFER_MACROCELLS
-struct Macrocell
-{
-  float Low, High; // range of the dual grids of its blocks
-#ifdef HAS_CACHE_MAP
-  uint Page;         // of the block map, where its blocks' cache slots stand
-  uint Requested[2]; // blocks asked for in this pass, a bit each
-#endif
-  // ranges of its 64 blocks' dual grids, two a word, 8 + 8 bits each: steps within its own range
-  uint Ranges[32];
-};
 BUFFER_MACROCELLS Macrocells { Macrocell macrocells[]; };
 #endif
 #ifdef BUFFER_HIDDEN_CELLS
@@ -125,14 +56,6 @@ BUFFER_CACHE_VALUES CacheValues { uint cacheValues[]; };
 #endif
 #endif
 #ifdef BUFFER_CACHE_MAP
-struct MapPage
-{
-  uint Cell;  // the macrocell it belongs to; NONE: free
-  uint Stamp; // last pass that used it
-  uint Used;  // slots on it
-  uint Free;  // not of this page: an element of the ring of free pages
-  uint Slots[64];
-};
 BUFFER_CACHE_MAP CacheMap { MapPage mapPages[]; };
 #endif
 #ifdef BUFFER_CACHE_FREE_SLOTS

@@ -22,8 +22,8 @@ struct ClippingPlane
   double Offset;
 };
 
-// The sum of two floats, in the units of the stream.
-struct Isovalue
+// A number as the sum of two floats.
+struct FloatSum
 {
   float High;
   float Low;
@@ -57,7 +57,7 @@ UNIFORM_BLOCK(View, VIEW_BINDING)
   int Padding4;
   int Padding5;
   int Padding6;
-  Isovalue Isovalues[MAX_ISOVALUES];
+  FloatSum Isovalues[MAX_ISOVALUES]; // in the units of the stream
 }
 INSTANCE(view);
 
