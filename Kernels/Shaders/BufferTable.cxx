@@ -3,6 +3,7 @@
 #include "Shaders/BufferTable.h"
 
 #include "Shaders/Glsl.h"
+#include "Shaders/HitSections.h"
 
 #include <cstddef>
 
@@ -54,8 +55,8 @@ const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers()
       Access::Write, "which cells have no surface" },
     { Buffer::Hits, "hits", "HITS", Lifetime::Image, Always,
       "8 *P*, and 4 *P* each for several isovalues, colours, and obstacles of a translucent image",
-      [](const E& e) { return 4 * (2 + e.SeveralIsovalues + e.Colored + e.Obstructed) * e.Pixels; },
-      Access::ReadWrite, "what each pixel's ray has met, see Hits.glsl" },
+      [](const E& e) { return 4 * HitSections(e).Count * e.Pixels; }, Access::ReadWrite,
+      "what each pixel's ray has met, see Hits.glsl" },
     { Buffer::Normals, "normals", "NORMALS", Lifetime::Image, StoredNormals, "4 *P*",
       [](const E& e) { return 4 * e.Pixels; }, Access::Write, "the hits' normals" },
     { Buffer::Layers, "layers", "LAYERS", Lifetime::Image, Translucent, "8 *P*",

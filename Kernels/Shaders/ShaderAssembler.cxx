@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Shaders/ShaderAssembler.h"
 
+#include "Shaders/HitSections.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
@@ -87,6 +89,16 @@ void WriteFeatures(std::ostream& out, const PipelineExtent& extent)
   {
     out << (feature.first ? std::string("#define ") + feature.second + "\n" : "");
   }
+}
+
+void WriteHitSections(std::ostream& out, const PipelineExtent& extent)
+{
+  const HitSections sections(extent);
+  out << "#define KEY_SECTION " << sections.Key << "u\n"
+      << "#define DEPTH_SECTION " << sections.Depth << "u\n"
+      << "#define ISOVALUE_SECTION " << sections.Isovalue << "u\n"
+      << "#define COLOR_SECTION " << sections.Color << "u\n"
+      << "#define OBSTACLE_SECTION " << sections.Obstacle << "u\n";
 }
 
 // Adds files to a shader's text, each once, and keeps where each line comes from.
@@ -178,6 +190,7 @@ AssembledShader AssembleShader(const StageInfo& stage, const std::string& file,
   WriteGroupSizes(out, stage);
   WriteBuffers(out, stage, bound);
   WriteFeatures(out, extent);
+  WriteHitSections(out, extent);
   Paster paster(
     out.str(), files, extent.Cached ? "Cache/CachedBlocks.glsl" : "Cache/DecodedVolume.glsl");
   paster.Paste(file);

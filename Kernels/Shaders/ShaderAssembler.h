@@ -43,6 +43,7 @@ constexpr const char* ViewportShader = "Output/Viewport.vert";
 /// - for each of its buffers that are `bound` BUFFER_<X>, the declaration up to its block's name
 ///   with its qualifiers, and WRITES_<X> if the stage may,
 /// - HAS_<X> for each buffer that the scene needs, and a macro for each of its other features,
+/// - <X>_SECTION for each section of the buffer of hits, see HitSections.h,
 /// - the file itself. `#include "X"` pastes X once; `#include BLOCK_ACCESS` the file that knows
 ///   how this scene's decoded blocks are found.
 AssembledShader AssembleShader(const StageInfo& stage, const std::string& file,

@@ -31,9 +31,9 @@ bool Shows(uint pixel)
 #ifdef HAS_NORMALS
   return normals[pixel] != NO_NORMAL;
 #elif defined(COLORED)
-  return hits[pixel] != NO_HIT && !isnan(ColorValueOf(pixel)); // NaN until it is found
+  return HitKeyOf(pixel) != NO_HIT && !isnan(ColorValueOf(pixel)); // NaN until it is found
 #else
-  return hits[pixel] != NO_HIT;
+  return HitKeyOf(pixel) != NO_HIT;
 #endif
 }
 #endif

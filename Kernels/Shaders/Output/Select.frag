@@ -30,7 +30,7 @@ vec3 CellColor(uint pixel, float t, int part)
 void main()
 {
   uint pixel = FragmentPixel();
-  if (hits[pixel] == NO_HIT)
+  if (HitKeyOf(pixel) == NO_HIT)
   {
     discard;
   }

@@ -29,7 +29,7 @@
 // Finds the normal, and the colour's value. Returns true if they have to wait for blocks.
 bool FindNormal(Ray ray, uint pixel, out vec3 normal)
 {
-  SurfacePoint hit = PointOf(ray, hits[pixel]);
+  SurfacePoint hit = PointOf(ray, HitKeyOf(pixel));
   ivec3 first = BlockOf(FirstStencilSample(hit.Cell));
   ivec3 reach = BlockOf(LastStencilSample(hit.Cell)) - first;
   uint missing = FindSlots(first, reach);
@@ -149,7 +149,7 @@ void main()
 {
   uint order = GROUP_SIZE * FoldedGroup() + gl_LocalInvocationIndex;
   uint pixel = order < PixelsInTiles() ? PixelInTileOrder(order) : NONE;
-  if (pixel != NONE && hits[pixel] != NO_HIT)
+  if (pixel != NONE && HitKeyOf(pixel) != NO_HIT)
   {
     FinishHit(pixel);
   }

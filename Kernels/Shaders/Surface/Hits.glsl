@@ -22,40 +22,39 @@ uint ImagePixels()
 }
 
 #ifdef BUFFER_HITS
+uint HitWord(uint section, uint pixel)
+{
+  return section * ImagePixels() + pixel;
+}
+
+uint HitKeyOf(uint pixel)
+{
+  return hits[HitWord(KEY_SECTION, pixel)];
+}
+
 Hit HitOf(uint pixel)
 {
 #ifdef SEVERAL_ISOVALUES
-  return Hit(hits[pixel], int(hits[2u * ImagePixels() + pixel] & 0xFFFFu));
+  return Hit(HitKeyOf(pixel), int(hits[HitWord(ISOVALUE_SECTION, pixel)] & 0xFFFFu));
 #else
-  return Hit(hits[pixel], 0);
+  return Hit(HitKeyOf(pixel), 0);
 #endif
 }
 
 float DepthOf(uint pixel)
 {
-  return uintBitsToFloat(hits[ImagePixels() + pixel]);
+  return uintBitsToFloat(hits[HitWord(DEPTH_SECTION, pixel)]);
 }
-
-#ifdef SEVERAL_ISOVALUES
-#define COLOR_SECTION 3u
-#else
-#define COLOR_SECTION 2u
-#endif
-#ifdef COLORED
-#define OBSTACLE_SECTION (COLOR_SECTION + 1u)
-#else
-#define OBSTACLE_SECTION COLOR_SECTION
-#endif
 
 float ObstacleOf(uint pixel)
 {
-  return uintBitsToFloat(hits[OBSTACLE_SECTION * ImagePixels() + pixel]);
+  return uintBitsToFloat(hits[HitWord(OBSTACLE_SECTION, pixel)]);
 }
 
 #ifdef COLORED
 float ColorValueOf(uint pixel)
 {
-  return uintBitsToFloat(hits[COLOR_SECTION * ImagePixels() + pixel]);
+  return uintBitsToFloat(hits[HitWord(COLOR_SECTION, pixel)]);
 }
 #endif
 #endif
@@ -64,24 +63,24 @@ float ColorValueOf(uint pixel)
 #ifdef COLORED
 void StoreColorValue(uint pixel, float value)
 {
-  hits[COLOR_SECTION * ImagePixels() + pixel] = floatBitsToUint(value);
+  hits[HitWord(COLOR_SECTION, pixel)] = floatBitsToUint(value);
 }
 #endif
 
 void StoreHit(uint pixel, Hit hit, float depth)
 {
 #ifdef TRANSLUCENT
-  bool first = hits[pixel] == NO_HIT;
+  bool first = HitKeyOf(pixel) == NO_HIT;
 #else
   bool first = true;
 #endif
-  hits[pixel] = hit.Key;
+  hits[HitWord(KEY_SECTION, pixel)] = hit.Key;
   if (first)
   {
-    hits[ImagePixels() + pixel] = floatBitsToUint(depth);
+    hits[HitWord(DEPTH_SECTION, pixel)] = floatBitsToUint(depth);
   }
 #ifdef SEVERAL_ISOVALUES
-  uint at = 2u * ImagePixels() + pixel;
+  uint at = HitWord(ISOVALUE_SECTION, pixel);
   uint firstIsovalue = first ? uint(hit.Isovalue) : hits[at] >> 16;
   hits[at] = uint(hit.Isovalue) | firstIsovalue << 16;
 #endif

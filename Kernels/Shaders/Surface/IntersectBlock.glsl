@@ -13,9 +13,9 @@
 // Cell of the block in which the ray is at parameter t: it has crossed all planes up to t.
 ivec3 CellAt(Ray ray, ivec3 block, double t)
 {
-  ivec3 entry = EntryPlanes(ray, block, 4);
+  ivec3 entry = EntryPlanes(ray, block, BLOCK_SIDE);
   ivec3 crossed = ivec3(0);
-  for (int i = 1; i < 4; ++i)
+  for (int i = 1; i < BLOCK_SIDE; ++i)
   {
     crossed += ivec3(lessThanEqual(PlanesT(ray, entry + i * ray.Step), dvec3(t)));
   }
