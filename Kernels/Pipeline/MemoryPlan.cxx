@@ -13,12 +13,10 @@ namespace
 constexpr std::int64_t AutomaticCacheBytes = 1LL << 30; // where no budget is set
 constexpr std::int64_t AutomaticDeviceShare = 4;        // likewise: a quarter of the GPU's memory
 
-// Any 64 rays find room for all the blocks and map pages that they need at once.
-constexpr std::int64_t MinimumSlots = 2048;
-constexpr std::int64_t MinimumMapPages = 512;
+// The rays of the least window find room for all the blocks and map pages that they need at once.
+constexpr std::int64_t MinimumSlots = 32 * glsl::LEAST_WINDOW;
+constexpr std::int64_t MinimumMapPages = 8 * glsl::LEAST_WINDOW;
 constexpr std::int64_t SlotsPerMapPage = 8;
-
-constexpr std::int64_t PaletteBytes = 16 * (1 + glsl::PALETTE_SIZE);
 
 std::int64_t LeastSlots(const PipelineExtent& scene)
 {
@@ -95,7 +93,8 @@ PipelineExtent WithWholeVolume(const PipelineExtent& scene)
 
 std::int64_t BytesBesideStream(const PipelineExtent& extent)
 {
-  std::int64_t bytes = UniformBuffers::GetBlockBytes() + (extent.Colored ? PaletteBytes : 0) +
+  std::int64_t bytes = UniformBuffers::GetBlockBytes() +
+    (extent.Colored ? static_cast<std::int64_t>(sizeof(glsl::Palette)) : 0) +
     HostTransfer::MaximumStagingBytes + SnapshotQueue::MaximumBytes;
   for (Lifetime lifetime :
     { Lifetime::Pipeline, Lifetime::Volume, Lifetime::Image, Lifetime::Cache })

@@ -16,7 +16,8 @@ const std::vector<StageInfo>& PipelineStages()
                    Drawing = Moment::Drawing;
   // clang-format off
   static const std::vector<StageInfo> stages = {
-    { Stage::BlockRanges, "BlockRanges", "Store/BlockRanges.comp", 32,
+    { Stage::BlockRanges, "BlockRanges", "Store/BlockRanges.comp",
+      glsl::BLOCKS_PER_MACROCELL / 2,
       OneGroup,
       { { Volume, Always } },
       { { B::Macrocells, W }, { B::Stream, R }, { B::HiddenCells, R }, { B::CacheValues, R } } },
@@ -28,7 +29,7 @@ const std::vector<StageInfo>& PipelineStages()
       OneGroup,
       { { Cache, Cached } },
       { { B::Control, W }, { B::Macrocells, W }, { B::CacheMap, W }, { B::CacheFreeSlots, W } } },
-    { Stage::CacheAges, "CacheAges", "Cache/CacheAges.comp", 256,
+    { Stage::CacheAges, "CacheAges", "Cache/CacheAges.comp", glsl::PASS_AGES,
       offsetof(glsl::Control, EvictGroups),
       { { Pass, Evicting } },
       { { B::Control, RW }, { B::CacheMap, R } } },

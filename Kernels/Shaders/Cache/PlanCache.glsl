@@ -5,8 +5,6 @@
 #include "Rays/Rays.glsl"
 
 #ifdef HAS_CACHE_MAP
-#define LEAST_WINDOW 64u // pixels; the smallest cache has room for all that their rays need at once
-
 // Slots and map pages that were taken leave their rings; slots that no page was found for are back.
 void CloseCache(inout PassRecord record)
 {

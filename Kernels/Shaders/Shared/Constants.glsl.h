@@ -46,6 +46,10 @@ const int MAX_SPECULATION = 64;
 const uint PIXELS_PER_BLOCK_AHEAD = 4u;
 const uint GROUP_BLOCKS_AHEAD = 256u;
 
+// Pixels whose rays take part in a pass, at least: the smallest cache has room for all that these
+// need at once.
+const uint LEAST_WINDOW = 64u;
+
 const uint MAX_GROUPS = 65535u; // work groups on an axis, as OpenGL 4.3 guarantees
 const uint PASS_RECORDS = 64u;  // ring of the last passes' statistics
 const uint PASS_AGES = 256u;    // ages, in passes, that the cache tells apart

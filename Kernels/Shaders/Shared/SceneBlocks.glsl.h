@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
-// The uniform blocks of all stages, one for each owner. GLSL (Scene.glsl) and C++ (Glsl.h) read this
-// file. Padding is spelt out: std140 aligns a vector of three like one of four, but lets a scalar
-// fill the gap.
+// The uniform blocks of all stages, one for each owner. GLSL (Scene.glsl) and C++ (Glsl.h) read
+// this file. Padding is spelt out: std140 aligns a vector of three like one of four, but lets a
+// scalar fill the gap.
 
 // A vector that is Base + x PerX + y PerY at the pixel's centre (x, y).
 struct PixelVector

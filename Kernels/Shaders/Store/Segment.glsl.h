@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
-// The part of a stream that a dispatch sees. GLSL (BlockStore.glsl) and C++ (Glsl.h) read this file.
+// The part of a stream that a dispatch sees. GLSL (BlockStore.glsl) and C++ (Glsl.h) read this
+// file.
 
 struct Segment
 {
