@@ -38,6 +38,7 @@ bool NearlySame(const glsl::PixelVector& a, const glsl::PixelVector& b)
 
 bool HasSameLook(const glsl::Look& a, const glsl::Look& b)
 {
+  // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): 0 and -0 only cost an image
   return std::memcmp(&a, &b, sizeof(a)) == 0;
 }
 }
@@ -75,6 +76,7 @@ bool HasSameHits(const glsl::View& a, const glsl::View& b)
   const double rangeOfB[] = { b.NearDistance, b.FarDistance, 0.0 };
   exact.NearDistance = a.NearDistance;
   exact.FarDistance = a.FarDistance;
+  // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
   return NearlySame(rangeOfA, rangeOfB) && std::memcmp(&a, &exact, sizeof(a)) == 0;
 }
 
