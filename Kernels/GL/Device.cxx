@@ -62,10 +62,10 @@ int Device::GetNumberOfGLErrors() const
   return this->Programs ? this->Programs->GetNumberOfGLErrors() : this->GLErrors;
 }
 
-void Device::SetExtent(const PipelineExtent& extent)
+void Device::SetNeeds(const SceneNeeds& needs)
 {
-  this->Extent = extent;
-  this->Timer.SetDetailed(extent.Detailed);
+  this->Needs = needs;
+  this->Timer.SetDetailed(needs.Detailed);
 }
 
 // Binds a stage's program and buffers; 0 after an error.
@@ -84,7 +84,7 @@ GLuint Device::Bind(Stage stage, const BoundSegment* segment)
     }
   }
   GLuint program = 0;
-  if (const Status built = this->Programs->Get(stage, bound, this->Extent, program); !built)
+  if (const Status built = this->Programs->Get(stage, bound, this->Needs, program); !built)
   {
     this->Gl.Fail(built);
     return 0;

@@ -50,7 +50,7 @@ public:
   ///@}
 
   /// Chooses the variants of the stages by what the scene needs.
-  void SetExtent(const PipelineExtent& extent);
+  void SetNeeds(const SceneNeeds& needs);
 
   ///@{ Runs a stage with so many work groups, or as many as the control block says at an offset. A
   /// stage that reads a stream runs once for each of its segments. Nothing runs after an error.
@@ -70,7 +70,7 @@ private:
   void Run(Stage stage, const std::vector<BoundSegment>& segments, const Launch& launch);
 
   std::shared_ptr<ProgramCache> Programs;
-  PipelineExtent Extent;
+  SceneNeeds Needs;
   GLuint VertexArray = 0;
   int GLErrors = 0; ///< until the last Release()
 };

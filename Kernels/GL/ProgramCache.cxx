@@ -62,16 +62,16 @@ std::shared_ptr<ProgramCache> ProgramCache::OfContext(std::uint64_t contextId, b
 }
 
 Status ProgramCache::Get(
-  Stage stage, const std::vector<Buffer>& bound, const PipelineExtent& extent, GLuint& program)
+  Stage stage, const std::vector<Buffer>& bound, const SceneNeeds& needs, GLuint& program)
 {
-  const Variant variant(stage, bound, extent.GetFeatures());
+  const Variant variant(stage, bound, needs.GetBits());
   const auto found = this->Programs.find(variant);
   if (found != this->Programs.end())
   {
     program = found->second;
     return Status();
   }
-  const Status built = this->Build(stage, bound, extent, program);
+  const Status built = this->Build(stage, bound, needs, program);
   if (built) // else the next render tries, and fails, again
   {
     this->Programs[variant] = program;
@@ -79,15 +79,15 @@ Status ProgramCache::Get(
   return built;
 }
 
-Status ProgramCache::Build(Stage stage, const std::vector<Buffer>& bound,
-  const PipelineExtent& extent, GLuint& program) const
+Status ProgramCache::Build(
+  Stage stage, const std::vector<Buffer>& bound, const SceneNeeds& needs, GLuint& program) const
 {
   const StageInfo& info = InfoOf(stage);
   program = glCreateProgram();
   const auto attach = [&](GLenum type, const std::string& file)
   {
     return AttachShader(
-      program, type, AssembleShader(info, file, bound, extent, this->ByExtensions));
+      program, type, AssembleShader(info, file, bound, needs, this->ByExtensions));
   };
   const std::string log = info.Draws()
     ? attach(GL_VERTEX_SHADER, ViewportShader) + attach(GL_FRAGMENT_SHADER, info.File)

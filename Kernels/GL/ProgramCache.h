@@ -32,7 +32,7 @@ public:
 
   /// Finds, or builds, a stage's program for the buffers that are bound and what the scene needs.
   Status Get(
-    Stage stage, const std::vector<Buffer>& bound, const PipelineExtent& extent, GLuint& program);
+    Stage stage, const std::vector<Buffer>& bound, const SceneNeeds& needs, GLuint& program);
   void Release();
 
   ///@{ OpenGL errors of the context, counted if the environment variable PROGISO_GL_DEBUG is set.
@@ -41,8 +41,8 @@ public:
   ///@}
 
 private:
-  Status Build(Stage stage, const std::vector<Buffer>& bound, const PipelineExtent& extent,
-    GLuint& program) const;
+  Status Build(
+    Stage stage, const std::vector<Buffer>& bound, const SceneNeeds& needs, GLuint& program) const;
 
   /// Stage, buffers bound, and the features of the scene.
   using Variant = std::tuple<Stage, std::vector<Buffer>, std::uint32_t>;

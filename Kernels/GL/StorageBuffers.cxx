@@ -84,32 +84,32 @@ Status StorageBuffers::Allocate(const BufferInfo& info, std::int64_t bytes)
   return Status();
 }
 
-Status StorageBuffers::Allocate(Lifetime lifetime, const PipelineExtent& extent)
+Status StorageBuffers::Allocate(Lifetime lifetime, const SceneNeeds& needs)
 {
   Status status;
   for (const BufferInfo& info : PipelineBuffers())
   {
     if (status && info.Life == lifetime)
     {
-      status = this->Allocate(info, info.Bytes(extent));
+      status = this->Allocate(info, info.Bytes(needs));
     }
   }
   return status;
 }
 
-bool StorageBuffers::Has(Lifetime lifetime, const PipelineExtent& extent) const
+bool StorageBuffers::Has(Lifetime lifetime, const SceneNeeds& needs) const
 {
   const auto& buffers = PipelineBuffers();
   return std::all_of(buffers.begin(), buffers.end(),
     [&](const BufferInfo& info)
-    { return info.Life != lifetime || info.Bytes(extent) == this->GetBytes(info.Id); });
+    { return info.Life != lifetime || info.Bytes(needs) == this->GetBytes(info.Id); });
 }
 
-void StorageBuffers::Trim(const PipelineExtent& extent)
+void StorageBuffers::Trim(const SceneNeeds& needs)
 {
   for (const BufferInfo& info : PipelineBuffers())
   {
-    if (info.Bytes(extent) != this->GetBytes(info.Id))
+    if (info.Bytes(needs) != this->GetBytes(info.Id))
     {
       this->Free(info.Id);
     }

@@ -22,15 +22,15 @@ public:
   {
   }
 
-  /// Makes the buffers of a lifetime as large as the extent wants them, and frees those that it
-  /// does not want. A buffer that has its size already is kept; the contents of others are
+  /// Makes the buffers of a lifetime as large as the scene needs them, and frees those that it
+  /// does not need. A buffer that has its size already is kept; the contents of others are
   /// undefined.
-  Status Allocate(Lifetime lifetime, const PipelineExtent& extent);
-  /// Have all buffers of a lifetime the size that the extent wants?
-  bool Has(Lifetime lifetime, const PipelineExtent& extent) const;
-  /// Frees every buffer that the extent wants in another size, so that the sum of all never exceeds
+  Status Allocate(Lifetime lifetime, const SceneNeeds& needs);
+  /// Have all buffers of a lifetime the size that the scene needs?
+  bool Has(Lifetime lifetime, const SceneNeeds& needs) const;
+  /// Frees every buffer that the scene needs in another size, so that the sum of all never exceeds
   /// what it is going to be.
-  void Trim(const PipelineExtent& extent);
+  void Trim(const SceneNeeds& needs);
   void Free(Lifetime lifetime);
   void FreeAll();
 

@@ -178,16 +178,17 @@ std::string SplitName(const std::string& name, std::size_t& element)
 }
 
 // A scene that needs every member of every structure.
-PipelineExtent EverythingNeeded(bool cached)
+SceneNeeds EverythingNeeded(bool cached)
 {
-  PipelineExtent extent;
-  extent.Blocks = 64;
-  extent.Macrocells = extent.Pixels = extent.Slots = extent.Pages = extent.HiddenWords = 1;
-  extent.Cached = cached;
-  extent.Lit = extent.Detailed = extent.SeveralIsovalues = true;
-  extent.Translucent = extent.Obstructed = extent.Clipped = extent.Cropped = true;
-  extent.Colored = true;
-  return extent;
+  SceneNeeds needs;
+  needs.Blocks = 64;
+  needs.Macrocells = needs.Pixels = needs.Slots = needs.MapPages = needs.HiddenWords = 1;
+  needs.HiddenCells = true;
+  needs.Cached = cached;
+  needs.Lit = needs.Detailed = needs.SeveralIsovalues = true;
+  needs.Translucent = needs.Obstructed = needs.Clipped = needs.Cropped = true;
+  needs.Colored = true;
+  return needs;
 }
 
 class SharedLayout : public testing::Test
@@ -204,7 +205,7 @@ protected:
   void TearDown() override { this->Programs->Release(); }
 
   // The programs of all stages for a scene.
-  std::map<std::string, GLuint> Build(const PipelineExtent& extent)
+  std::map<std::string, GLuint> Build(const SceneNeeds& needs)
   {
     std::map<std::string, GLuint> programs;
     for (const StageInfo& stage : PipelineStages())
@@ -212,17 +213,17 @@ protected:
       std::vector<Buffer> bound;
       for (const BufferUse& use : stage.Buffers)
       {
-        if (PipelineBuffers()[static_cast<std::size_t>(use.Id)].IsNeeded(extent))
+        if (PipelineBuffers()[static_cast<std::size_t>(use.Id)].IsNeeded(needs))
         {
           bound.push_back(use.Id);
         }
       }
       const bool needed = std::any_of(stage.Runs.begin(), stage.Runs.end(),
-        [&](const StageRun& run) { return run.Needed.Holds(extent); });
+        [&](const StageRun& run) { return run.Needed.Holds(needs); });
       if (needed)
       {
         GLuint& program = programs[stage.Name];
-        const Status built = this->Programs->Get(stage.Id, bound, extent, program);
+        const Status built = this->Programs->Get(stage.Id, bound, needs, program);
         EXPECT_TRUE(built) << built.GetMessage();
       }
     }
@@ -339,14 +340,14 @@ TEST_F(SharedLayout, StorageBuffersLieAsInCxx)
 
 TEST_F(SharedLayout, MacrocellsWithoutACacheAreAsLargeAsTheTableSays)
 {
-  const PipelineExtent extent = EverythingNeeded(false);
-  const GLuint program = this->Build(extent)["CastRays"];
+  const SceneNeeds needs = EverythingNeeded(false);
+  const GLuint program = this->Build(needs)["CastRays"];
   const GLuint ranges =
     glGetProgramResourceIndex(program, GL_BUFFER_VARIABLE, "macrocells[0].Ranges[0]");
   const std::vector<GLint> answers =
     Ask(program, GL_BUFFER_VARIABLE, ranges, { GL_TOP_LEVEL_ARRAY_STRIDE });
   const BufferInfo& info = PipelineBuffers()[static_cast<std::size_t>(Buffer::Macrocells)];
-  EXPECT_EQ(answers[0], info.Bytes(extent));
+  EXPECT_EQ(answers[0], info.Bytes(needs));
 }
 
 // Blocks are compared and copied byte by byte.

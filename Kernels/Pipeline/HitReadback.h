@@ -22,10 +22,10 @@ struct PixelHit
 class HitReadback
 {
 public:
-  HitReadback(HostTransfer& transfer, GLuint hits, const PipelineExtent& extent)
+  HitReadback(HostTransfer& transfer, GLuint hits, const SceneNeeds& needs)
     : Transfer(transfer)
     , Hits(hits)
-    , Extent(extent)
+    , Needs(needs)
   {
   }
 
@@ -36,12 +36,12 @@ public:
   PixelHit Read(std::int64_t pixel);
 
   /// Where in the buffer the depths of opaque geometry begin, in bytes.
-  static std::int64_t GetObstacleOffset(const PipelineExtent& extent);
+  static std::int64_t GetObstacleOffset(const SceneNeeds& needs);
 
 private:
   HostTransfer& Transfer;
   GLuint Hits;
-  PipelineExtent Extent;
+  SceneNeeds Needs;
 };
 
 #endif

@@ -18,13 +18,13 @@ constexpr std::int64_t MinimumSlots = 32 * glsl::LEAST_WINDOW;
 constexpr std::int64_t MinimumMapPages = 8 * glsl::LEAST_WINDOW;
 constexpr std::int64_t SlotsPerMapPage = 8;
 
-std::int64_t LeastSlots(const PipelineExtent& scene)
+std::int64_t LeastSlots(const SceneNeeds& scene)
 {
   return std::min(MinimumSlots, scene.Blocks);
 }
 
 std::int64_t ChooseBudget(
-  const DeviceLimits& limits, const PipelineSettings& settings, const PipelineExtent& scene)
+  const DeviceLimits& limits, const PipelineSettings& settings, const SceneNeeds& scene)
 {
   if (settings.MemoryBudget > 0)
   {
@@ -36,8 +36,7 @@ std::int64_t ChooseBudget(
 }
 
 // As many slots as the volume has blocks, one buffer can hold and the budget has room for.
-std::int64_t LimitSlots(
-  const DeviceLimits& limits, std::int64_t budget, const PipelineExtent& scene)
+std::int64_t LimitSlots(const DeviceLimits& limits, std::int64_t budget, const SceneNeeds& scene)
 {
   std::int64_t low = 0;
   std::int64_t high = std::min(scene.Blocks, limits.LargestBuffer / BytesPerSlot(scene));
@@ -58,11 +57,11 @@ std::int64_t LimitSlots(
 }
 
 MemoryPlan PlanMemory(
-  const DeviceLimits& limits, const PipelineSettings& settings, const PipelineExtent& scene)
+  const DeviceLimits& limits, const PipelineSettings& settings, const SceneNeeds& scene)
 {
   MemoryPlan plan;
   plan.Budget = ChooseBudget(limits, settings, scene);
-  const PipelineExtent whole = WithWholeVolume(scene);
+  const SceneNeeds whole = WithWholeVolume(scene);
   const std::int64_t wholeBytes = BytesBesideStream(whole);
   const std::int64_t leastCached = BytesBesideStream(WithCache(scene, LeastSlots(scene)));
   const bool wholeFits =
@@ -73,33 +72,33 @@ MemoryPlan PlanMemory(
   return plan;
 }
 
-PipelineExtent WithCache(const PipelineExtent& scene, std::int64_t slots)
+SceneNeeds WithCache(const SceneNeeds& scene, std::int64_t slots)
 {
-  PipelineExtent extent = scene;
-  extent.Cached = true;
-  extent.Slots = slots;
-  extent.Pages = std::min(scene.Macrocells, std::max(MinimumMapPages, slots / SlotsPerMapPage));
-  return extent;
+  SceneNeeds needs = scene;
+  needs.Cached = true;
+  needs.Slots = slots;
+  needs.MapPages = std::min(scene.Macrocells, std::max(MinimumMapPages, slots / SlotsPerMapPage));
+  return needs;
 }
 
-PipelineExtent WithWholeVolume(const PipelineExtent& scene)
+SceneNeeds WithWholeVolume(const SceneNeeds& scene)
 {
-  PipelineExtent extent = scene;
-  extent.Cached = false;
-  extent.Slots = scene.Blocks;
-  extent.Pages = 0;
-  return extent;
+  SceneNeeds needs = scene;
+  needs.Cached = false;
+  needs.Slots = scene.Blocks;
+  needs.MapPages = 0;
+  return needs;
 }
 
-std::int64_t BytesBesideStream(const PipelineExtent& extent)
+std::int64_t BytesBesideStream(const SceneNeeds& needs)
 {
   std::int64_t bytes = UniformBuffers::GetBlockBytes() +
-    (extent.Colored ? static_cast<std::int64_t>(sizeof(glsl::Palette)) : 0) +
+    (needs.Colored ? static_cast<std::int64_t>(sizeof(glsl::Palette)) : 0) +
     HostTransfer::MaximumStagingBytes + SnapshotQueue::MaximumBytes;
   for (Lifetime lifetime :
     { Lifetime::Pipeline, Lifetime::Volume, Lifetime::Image, Lifetime::Cache })
   {
-    bytes += BytesOf(lifetime, extent);
+    bytes += BytesOf(lifetime, needs);
   }
   return bytes;
 }

@@ -22,15 +22,15 @@ struct MemoryPlan
 /// Chooses the budget, decides between a cache and the decoded volume, and limits the cache.
 /// The scene's slots and map pages do not count.
 MemoryPlan PlanMemory(
-  const DeviceLimits& limits, const PipelineSettings& settings, const PipelineExtent& scene);
+  const DeviceLimits& limits, const PipelineSettings& settings, const SceneNeeds& scene);
 
 ///@{ The scene with a cache of so many slots and the map pages that go with them, or with the whole
 /// volume decoded.
-PipelineExtent WithCache(const PipelineExtent& scene, std::int64_t slots);
-PipelineExtent WithWholeVolume(const PipelineExtent& scene);
+SceneNeeds WithCache(const SceneNeeds& scene, std::int64_t slots);
+SceneNeeds WithWholeVolume(const SceneNeeds& scene);
 ///@}
 
 /// Bytes of all GPU memory beside the compressed stream.
-std::int64_t BytesBesideStream(const PipelineExtent& extent);
+std::int64_t BytesBesideStream(const SceneNeeds& needs);
 
 #endif

@@ -29,12 +29,12 @@ glsl::Volume DescribeVolume(const VolumeSize& size, const PipelineVolume& volume
   return block;
 }
 
-std::set<Stage> StagesOf(Moment moment, const PipelineExtent& extent)
+std::set<Stage> StagesOf(Moment moment, const SceneNeeds& needs)
 {
   std::set<Stage> stages;
   for (const StageInfo& info : PipelineStages())
   {
-    if (info.IsNeeded(moment, extent))
+    if (info.IsNeeded(moment, needs))
     {
       stages.insert(info.Id);
     }
@@ -53,7 +53,7 @@ Status ProgressivePipeline::Initialize(std::uint64_t contextId)
   {
     return opened;
   }
-  if (const Status made = this->Gpu->Buffers.Allocate(Lifetime::Pipeline, this->Extent); !made)
+  if (const Status made = this->Gpu->Buffers.Allocate(Lifetime::Pipeline, this->Needs); !made)
   {
     return made;
   }
@@ -73,7 +73,7 @@ void ProgressivePipeline::Release()
 {
   this->Streams.Free();
   this->Gpu->Release();
-  this->Extent = PipelineExtent();
+  this->Needs = SceneNeeds();
   this->Volume = PipelineVolume();
   this->VolumeLoaded = false;
   this->Started = false;
@@ -88,10 +88,11 @@ void ProgressivePipeline::SetVolume(const PipelineVolume& volume)
   this->Size = VolumeSize(volume.Samples);
   this->VolumeLoaded = false;
   this->Started = false;
-  this->Extent.Blocks = this->Size.GetNumberOfBlocks();
-  this->Extent.Macrocells = this->Size.GetNumberOfMacrocells();
-  this->Extent.Colored = volume.Colors.Data != nullptr;
-  this->Extent.HiddenWords = static_cast<std::int64_t>(volume.Hidden.size());
+  this->Needs.Blocks = this->Size.GetNumberOfBlocks();
+  this->Needs.Macrocells = this->Size.GetNumberOfMacrocells();
+  this->Needs.Colored = volume.Colors.Data != nullptr;
+  this->Needs.HiddenCells = !volume.Hidden.empty();
+  this->Needs.HiddenWords = static_cast<std::int64_t>(volume.Hidden.size());
   this->Policy.Reset();
 }
 
@@ -106,23 +107,23 @@ Status ProgressivePipeline::LoadVolume()
 {
   this->Gpu->Timer.Forget();
   this->VolumeLoaded = false;
-  Status status = this->Gpu->Buffers.Allocate(Lifetime::Volume, this->Extent);
-  if (status && !this->Extent.Cached)
+  Status status = this->Gpu->Buffers.Allocate(Lifetime::Volume, this->Needs);
+  if (status && !this->Needs.Cached)
   {
-    status = this->Gpu->Buffers.Allocate(Lifetime::Cache, this->Extent);
+    status = this->Gpu->Buffers.Allocate(Lifetime::Cache, this->Needs);
   }
   if (status)
   {
     status = this->UploadVolume();
   }
-  if (status && !this->Extent.Cached)
+  if (status && !this->Needs.Cached)
   {
     this->DecodeWholeVolume();
   }
   if (status)
   {
     this->Gpu->Dispatch(
-      Stage::BlockRanges, this->Extent.Macrocells, this->Streams.GetSegments(Stage::BlockRanges));
+      Stage::BlockRanges, this->Needs.Macrocells, this->Streams.GetSegments(Stage::BlockRanges));
     status = this->GetStatus();
   }
   this->VolumeLoaded = status.IsOk();
@@ -136,7 +137,7 @@ Status ProgressivePipeline::UploadVolume()
   this->Streams.Free();
   Status status =
     this->Streams.Upload(this->Gpu->Gl, Buffer::Stream, this->Volume.Values, this->Size);
-  if (status && this->Extent.Colored)
+  if (status && this->Needs.Colored)
   {
     status =
       this->Streams.Upload(this->Gpu->Gl, Buffer::ColorStream, this->Volume.Colors, this->Size);
@@ -148,10 +149,10 @@ void ProgressivePipeline::DecodeWholeVolume()
 {
   for (const Stage stage : { Stage::DecodeBlocks, Stage::DecodeColors })
   {
-    if (InfoOf(stage).IsNeeded(Moment::Volume, this->Extent))
+    if (InfoOf(stage).IsNeeded(Moment::Volume, this->Needs))
     {
       this->Gpu->Dispatch(
-        stage, GroupsFor(stage, this->Extent.Slots), this->Streams.GetSegments(stage));
+        stage, GroupsFor(stage, this->Needs.Slots), this->Streams.GetSegments(stage));
     }
   }
   this->Streams.Free();
@@ -159,13 +160,13 @@ void ProgressivePipeline::DecodeWholeVolume()
 
 Status ProgressivePipeline::DecodeVolume(std::vector<float>& values)
 {
-  this->Extent = WithWholeVolume(this->Extent);
-  this->Gpu->SetExtent(this->Extent);
+  this->Needs = WithWholeVolume(this->Needs);
+  this->Gpu->SetNeeds(this->Needs);
   if (const Status loaded = this->LoadVolume(); !loaded)
   {
     return loaded;
   }
-  values.resize(static_cast<std::size_t>(glsl::SAMPLES_PER_BLOCK * this->Extent.Slots));
+  values.resize(static_cast<std::size_t>(glsl::SAMPLES_PER_BLOCK * this->Needs.Slots));
   this->Gpu->Transfer.Read(this->Gpu->Buffers.GetName(Buffer::CacheValues), 0, values.data(),
     static_cast<std::int64_t>(values.size() * sizeof(float)));
   return this->GetStatus();
@@ -178,16 +179,16 @@ Status ProgressivePipeline::DecodeVolume(std::vector<float>& values)
 Status ProgressivePipeline::MakeCache(bool newImage)
 {
   const std::int64_t most = this->Plan.MaximumSlots;
-  std::int64_t slots = this->Extent.Slots;
+  std::int64_t slots = this->Needs.Slots;
   if (slots == 0)
   {
-    slots = CachePolicy::SlotsAtFirst(this->Extent.Pixels, most);
+    slots = CachePolicy::SlotsAtFirst(this->Needs.Pixels, most);
   }
   else if (newImage)
   {
     slots = this->Policy.SlotsForNewImage(slots);
   }
-  const bool same = this->Gpu->Buffers.Has(Lifetime::Cache, WithCache(this->Extent, slots)) &&
+  const bool same = this->Gpu->Buffers.Has(Lifetime::Cache, WithCache(this->Needs, slots)) &&
     this->Cache.CannotGrow == (slots == most ? 1u : 0u);
   if (!same)
   {
@@ -199,19 +200,19 @@ Status ProgressivePipeline::MakeCache(bool newImage)
 // A resized cache is empty: rays ask again for what they still need.
 void ProgressivePipeline::ResizeCache(std::int64_t slots)
 {
-  this->Extent = WithCache(this->Extent, slots);
-  this->Gpu->SetExtent(this->Extent);
-  if (!this->Gpu->Buffers.Allocate(Lifetime::Cache, this->Extent))
+  this->Needs = WithCache(this->Needs, slots);
+  this->Gpu->SetNeeds(this->Needs);
+  if (!this->Gpu->Buffers.Allocate(Lifetime::Cache, this->Needs))
   {
     this->Gpu->Buffers.Free(Lifetime::Cache);
-    this->Extent.Slots = 0;
+    this->Needs.Slots = 0;
     return; // the context keeps the error
   }
   this->Cache.Slots = static_cast<std::uint32_t>(slots);
-  this->Cache.MapPages = static_cast<std::uint32_t>(this->Extent.Pages);
+  this->Cache.MapPages = static_cast<std::uint32_t>(this->Needs.MapPages);
   this->Cache.CannotGrow = slots == this->Plan.MaximumSlots ? 1 : 0;
   this->UploadCacheBlock();
-  const std::int64_t items = std::max(slots, this->Extent.Macrocells);
+  const std::int64_t items = std::max(slots, this->Needs.Macrocells);
   this->Gpu->Dispatch(
     Stage::CacheReset, std::min(GroupsFor(Stage::CacheReset, items), MaximumResetGroups));
   this->PassesBeforeCache = this->Log.GetSubmitted();
@@ -239,10 +240,10 @@ Status ProgressivePipeline::SetScene(
   }
   this->Gpu->Uniforms.Upload(scene.View);
   this->Gpu->Uniforms.Upload(scene.Look);
-  const PipelineExtent before = this->Extent;
-  this->UpdateExtent(scene);
-  this->Started = this->Started && !newImage && before.Pixels == this->Extent.Pixels &&
-    before.GetFeatures() == this->Extent.GetFeatures();
+  const SceneNeeds before = this->Needs;
+  this->UpdateNeeds(scene);
+  this->Started = this->Started && !newImage && before.Pixels == this->Needs.Pixels &&
+    before.GetBits() == this->Needs.GetBits();
   return this->MakeRoom(newImage);
 }
 
@@ -260,52 +261,52 @@ void ProgressivePipeline::DropDecodedBlocks()
 {
   this->CacheToEmpty = false;
   this->Started = false;
-  if (!this->Extent.Cached)
+  if (!this->Needs.Cached)
   {
     this->VolumeLoaded = false;
   }
-  else if (this->Extent.Slots > 0)
+  else if (this->Needs.Slots > 0)
   {
-    this->ResizeCache(this->Extent.Slots);
+    this->ResizeCache(this->Needs.Slots);
   }
 }
 
-void ProgressivePipeline::UpdateExtent(const PipelineScene& scene)
+void ProgressivePipeline::UpdateNeeds(const PipelineScene& scene)
 {
   const glsl::View& view = scene.View;
   std::copy(view.ImageSize, view.ImageSize + 2, this->Viewport);
   std::copy(view.ImageOrigin, view.ImageOrigin + 2, this->Viewport + 2);
-  this->Extent.Pixels = static_cast<std::int64_t>(view.ImageSize[0]) * view.ImageSize[1];
-  this->Extent.Detailed = this->Settings.Detailed;
-  this->Extent.Lit = scene.Look.NumberOfLights > 0;
-  this->Extent.Translucent = scene.Translucent;
-  this->Extent.Obstructed = scene.Obstructed;
-  this->Extent.SeveralIsovalues = view.NumberOfIsovalues > 1;
-  this->Extent.Clipped = view.NumberOfClippingPlanes > 0;
-  this->Extent.Cropped = view.DrawnRegions != glsl::ALL_REGIONS;
+  this->Needs.Pixels = static_cast<std::int64_t>(view.ImageSize[0]) * view.ImageSize[1];
+  this->Needs.Detailed = this->Settings.Detailed;
+  this->Needs.Lit = scene.Look.NumberOfLights > 0;
+  this->Needs.Translucent = scene.Translucent;
+  this->Needs.Obstructed = scene.Obstructed;
+  this->Needs.SeveralIsovalues = view.NumberOfIsovalues > 1;
+  this->Needs.Clipped = view.NumberOfClippingPlanes > 0;
+  this->Needs.Cropped = view.DrawnRegions != glsl::ALL_REGIONS;
 }
 
 // Makes each buffer as large as the scene needs and the budget allows.
 Status ProgressivePipeline::MakeRoom(bool newImage)
 {
-  this->Plan = PlanMemory(this->Gpu->Gl.GetLimits(), this->Settings, this->Extent);
+  this->Plan = PlanMemory(this->Gpu->Gl.GetLimits(), this->Settings, this->Needs);
   if (this->Plan.Cached && this->Plan.MaximumSlots == 0)
   {
     return this->Gpu->Gl.Fail(Status::Error("the memory budget of ", this->Plan.Budget,
       " bytes is too small: this volume at this image size needs at least ", this->Plan.LeastBudget,
       " bytes beside the compressed stream"));
   }
-  const bool reload = !this->VolumeLoaded || this->Plan.Cached != this->Extent.Cached;
+  const bool reload = !this->VolumeLoaded || this->Plan.Cached != this->Needs.Cached;
   this->FreeForPlan(reload);
   Status status = reload ? this->LoadVolume() : Status();
   if (status)
   {
-    status = this->Gpu->Buffers.Allocate(Lifetime::Image, this->Extent);
+    status = this->Gpu->Buffers.Allocate(Lifetime::Image, this->Needs);
   }
   if (status)
   {
     status = this->Plan.Cached ? this->MakeCache(newImage)
-                               : this->Gpu->Buffers.Allocate(Lifetime::Cache, this->Extent);
+                               : this->Gpu->Buffers.Allocate(Lifetime::Cache, this->Needs);
   }
   return status;
 }
@@ -313,16 +314,16 @@ Status ProgressivePipeline::MakeRoom(bool newImage)
 // Frees first what the plan wants in another size, so that the sum never exceeds the budget.
 void ProgressivePipeline::FreeForPlan(bool reload)
 {
-  const std::int64_t before = this->Extent.Slots;
+  const std::int64_t before = this->Needs.Slots;
   const std::int64_t kept = reload ? 0 : std::min(before, this->Plan.MaximumSlots);
-  this->Extent = this->Plan.Cached ? WithCache(this->Extent, kept) : WithWholeVolume(this->Extent);
-  this->Started = this->Started && this->Extent.Slots == before && !reload;
+  this->Needs = this->Plan.Cached ? WithCache(this->Needs, kept) : WithWholeVolume(this->Needs);
+  this->Started = this->Started && this->Needs.Slots == before && !reload;
   if (reload)
   {
     this->Streams.Free();
   }
-  this->Gpu->Buffers.Trim(this->Extent);
-  this->Gpu->SetExtent(this->Extent);
+  this->Gpu->Buffers.Trim(this->Needs);
+  this->Gpu->SetNeeds(this->Needs);
   this->UploadCacheBlock();
 }
 
@@ -332,10 +333,10 @@ void ProgressivePipeline::FreeForPlan(bool reload)
 void ProgressivePipeline::Start()
 {
   this->Gpu->Snapshots.Clear();
-  this->Log.StartImage(this->Extent.Pixels);
+  this->Log.StartImage(this->Needs.Pixels);
   this->PassesBeforeCache = 0;
   this->Started = true;
-  this->Gpu->Timer.StartImage(StagesOf(Moment::Volume, this->Extent));
+  this->Gpu->Timer.StartImage(StagesOf(Moment::Volume, this->Needs));
   this->ClearImage();
   const std::uint32_t yes = 1;
   this->Gpu->Transfer.Write(this->Gpu->Buffers.GetName(Buffer::Control),
@@ -351,10 +352,10 @@ void ProgressivePipeline::ClearImage()
   this->Gpu->Buffers.Fill(Buffer::Hits, glsl::NO_HIT);
   this->Gpu->Buffers.Fill(Buffer::Normals, glsl::NO_NORMAL);
   this->Gpu->Buffers.Fill(Buffer::Layers, 0);
-  if (this->Extent.Obstructed)
+  if (this->Needs.Obstructed)
   {
     CaptureDepths(this->Viewport, this->Gpu->Buffers.GetName(Buffer::Hits),
-      HitReadback::GetObstacleOffset(this->Extent));
+      HitReadback::GetObstacleOffset(this->Needs));
   }
 }
 
@@ -381,7 +382,7 @@ void ProgressivePipeline::RunPass()
 void ProgressivePipeline::RunStage(Stage stage)
 {
   const StageInfo& info = InfoOf(stage);
-  if (!info.IsNeeded(Moment::Pass, this->Extent))
+  if (!info.IsNeeded(Moment::Pass, this->Needs))
   {
     return;
   }
@@ -401,7 +402,7 @@ void ProgressivePipeline::RunStage(Stage stage)
 void ProgressivePipeline::RunPasses(int maximum, bool eager, const std::function<bool()>& stop)
 {
   const std::int64_t ahead =
-    eager || this->Gpu->Gl.GetLimits().Software || this->Extent.IsSinglePass() ? 1 : PassesAhead;
+    eager || this->Gpu->Gl.GetLimits().Software || this->Needs.IsSinglePass() ? 1 : PassesAhead;
   const std::int64_t last =
     maximum > 0 ? this->Log.GetSubmitted() + maximum : std::numeric_limits<std::int64_t>::max();
   bool more = this->Log.GetRemainingRays() > 0 && this->GetStatus();
@@ -411,7 +412,7 @@ void ProgressivePipeline::RunPasses(int maximum, bool eager, const std::function
     {
       this->RunPass();
     }
-    if (this->Extent.IsSinglePass())
+    if (this->Needs.IsSinglePass())
     {
       this->Log.AssumeComplete();
       return;
@@ -436,8 +437,8 @@ void ProgressivePipeline::AwaitPass()
   if (pass && this->Log.GetKnown() > this->PassesBeforeCache)
   {
     const std::int64_t slots = this->Policy.SlotsAfterPass(
-      *pass, this->Extent.Slots, this->Extent.Pixels, this->Plan.MaximumSlots);
-    if (slots != this->Extent.Slots)
+      *pass, this->Needs.Slots, this->Needs.Pixels, this->Plan.MaximumSlots);
+    if (slots != this->Needs.Slots)
     {
       this->ResizeCache(slots);
     }
@@ -465,7 +466,7 @@ void ProgressivePipeline::EndImage()
 
 double ProgressivePipeline::GetCompletedFraction() const
 {
-  const double pixels = static_cast<double>(this->Extent.Pixels);
+  const double pixels = static_cast<double>(this->Needs.Pixels);
   return this->Started && pixels > 0.0
     ? 1.0 - static_cast<double>(this->Log.GetRemainingRays()) / pixels
     : 0.0;
@@ -473,7 +474,7 @@ double ProgressivePipeline::GetCompletedFraction() const
 
 HitReadback ProgressivePipeline::GetHits()
 {
-  return HitReadback(this->Gpu->Transfer, this->Gpu->Buffers.GetName(Buffer::Hits), this->Extent);
+  return HitReadback(this->Gpu->Transfer, this->Gpu->Buffers.GetName(Buffer::Hits), this->Needs);
 }
 
 //------------------------------------------------------------------------------

@@ -96,7 +96,7 @@ public:
 private:
   void ApplySettings(const PipelineSettings& settings);
   void DropDecodedBlocks();
-  void UpdateExtent(const PipelineScene& scene);
+  void UpdateNeeds(const PipelineScene& scene);
   Status MakeRoom(bool newImage);
   void FreeForPlan(bool reload);
   Status LoadVolume();
@@ -116,7 +116,7 @@ private:
   PipelineVolume Volume;
   VolumeSize Size;
   PipelineSettings Settings;
-  PipelineExtent Extent; ///< what the GPU's buffers are made for
+  SceneNeeds Needs; ///< of the scene, which the GPU's buffers are made for
   glsl::Cache Cache = {};
   std::int32_t Viewport[4] = { 0, 0, 0, 0 }; ///< width, height and origin in the window
   MemoryPlan Plan;

@@ -12,11 +12,11 @@ constexpr std::int64_t MiB = 1LL << 20;
 constexpr std::int64_t GiB = 1LL << 30;
 
 // A volume of samples^3 in an image of 1280x720, lit.
-PipelineExtent Scene(int samples)
+SceneNeeds Scene(int samples)
 {
   const int dimensions[3] = { samples, samples, samples };
   const VolumeSize size(dimensions);
-  PipelineExtent scene;
+  SceneNeeds scene;
   scene.Blocks = size.GetNumberOfBlocks();
   scene.Macrocells = size.GetNumberOfMacrocells();
   scene.Pixels = 1280 * 720;
@@ -40,7 +40,7 @@ PipelineSettings WithBudget(std::int64_t budget, bool decodeWholeVolume = true)
   return settings;
 }
 
-std::int64_t BytesWithCache(const PipelineExtent& scene, std::int64_t slots)
+std::int64_t BytesWithCache(const SceneNeeds& scene, std::int64_t slots)
 {
   return BytesBesideStream(WithCache(scene, slots));
 }
@@ -53,7 +53,7 @@ TEST(MemoryPlan, BudgetThatIsSetIsInForce)
 
 TEST(MemoryPlan, AutomaticBudgetIsAGibibyteOfBlocksOrAQuarterOfTheGPU)
 {
-  const PipelineExtent scene = Scene(1024);
+  const SceneNeeds scene = Scene(1024);
   const std::int64_t most = BytesWithCache(scene, 0) + GiB;
   EXPECT_EQ(PlanMemory(Limits(), WithBudget(0), scene).Budget, most);
   EXPECT_EQ(PlanMemory(Limits(4 * most), WithBudget(0), scene).Budget, most);
@@ -63,7 +63,7 @@ TEST(MemoryPlan, AutomaticBudgetIsAGibibyteOfBlocksOrAQuarterOfTheGPU)
 
 TEST(MemoryPlan, WholeVolumeWhereTheBudgetHasRoom)
 {
-  const PipelineExtent scene = Scene(256);
+  const SceneNeeds scene = Scene(256);
   const std::int64_t whole = BytesBesideStream(WithWholeVolume(scene));
   EXPECT_FALSE(PlanMemory(Limits(), WithBudget(whole), scene).Cached);
   EXPECT_TRUE(PlanMemory(Limits(), WithBudget(whole - 1), scene).Cached);
@@ -72,7 +72,7 @@ TEST(MemoryPlan, WholeVolumeWhereTheBudgetHasRoom)
 
 TEST(MemoryPlan, WholeVolumeMustFitOneBuffer)
 {
-  const PipelineExtent scene = Scene(256);
+  const SceneNeeds scene = Scene(256);
   DeviceLimits limits = Limits();
   limits.LargestBuffer = 256 * scene.Blocks; // 64 floats a block
   EXPECT_FALSE(PlanMemory(limits, WithBudget(GiB), scene).Cached);
@@ -84,9 +84,9 @@ TEST(MemoryPlan, WholeVolumeMustFitOneBuffer)
 
 TEST(MemoryPlan, ColorsDoubleASlotAndHiddenCellsAddToIt)
 {
-  PipelineExtent scene = Scene(256);
+  SceneNeeds scene = Scene(256);
   scene.Colored = true;
-  scene.HiddenWords = 4;
+  scene.HiddenCells = true;
   DeviceLimits limits = Limits();
   limits.LargestBuffer = (2 * 256 + 16) * 100000;
   EXPECT_EQ(PlanMemory(limits, WithBudget(GiB), scene).MaximumSlots, 100000);
@@ -94,7 +94,7 @@ TEST(MemoryPlan, ColorsDoubleASlotAndHiddenCellsAddToIt)
 
 TEST(MemoryPlan, CacheFillsTheBudget)
 {
-  const PipelineExtent scene = Scene(1024);
+  const SceneNeeds scene = Scene(1024);
   for (std::int64_t slots : { 2048, 4096, 4097, 100000, 1000000 })
   {
     const std::int64_t budget = BytesWithCache(scene, slots);
@@ -107,7 +107,7 @@ TEST(MemoryPlan, CacheFillsTheBudget)
 
 TEST(MemoryPlan, CacheNeverHasMoreSlotsThanBlocks)
 {
-  const PipelineExtent scene = Scene(64);
+  const SceneNeeds scene = Scene(64);
   const MemoryPlan plan = PlanMemory(Limits(), WithBudget(8 * GiB, false), scene);
   EXPECT_TRUE(plan.Cached);
   EXPECT_EQ(plan.MaximumSlots, 16 * 16 * 16);
@@ -115,7 +115,7 @@ TEST(MemoryPlan, CacheNeverHasMoreSlotsThanBlocks)
 
 TEST(MemoryPlan, LeastBudgetIsJustEnough)
 {
-  const PipelineExtent scene = Scene(1024);
+  const SceneNeeds scene = Scene(1024);
   const std::int64_t least = PlanMemory(Limits(), WithBudget(GiB), scene).LeastBudget;
   EXPECT_EQ(least, BytesWithCache(scene, 2048));
   EXPECT_EQ(PlanMemory(Limits(), WithBudget(least), scene).MaximumSlots, 2048);
@@ -127,7 +127,7 @@ TEST(MemoryPlan, LeastBudgetIsJustEnough)
 
 TEST(MemoryPlan, LeastBudgetOfASmallVolumeIsThatOfItsBlocks)
 {
-  const PipelineExtent scene = Scene(32); // 512 blocks
+  const SceneNeeds scene = Scene(32); // 512 blocks
   const std::int64_t whole = BytesBesideStream(WithWholeVolume(scene));
   const std::int64_t cached = BytesWithCache(scene, 512);
   ASSERT_LT(whole, cached); // rays of a decoded volume need no buffer
@@ -140,20 +140,20 @@ TEST(MemoryPlan, LeastBudgetOfASmallVolumeIsThatOfItsBlocks)
 
 TEST(MemoryPlan, MapPagesFollowTheSlots)
 {
-  const PipelineExtent scene = Scene(1024); // 262144 macrocells
-  EXPECT_EQ(WithCache(scene, 2048).Pages, 512);
-  EXPECT_EQ(WithCache(scene, 4096).Pages, 512);
-  EXPECT_EQ(WithCache(scene, 8192).Pages, 1024);
-  EXPECT_EQ(WithCache(scene, 8 * 300000).Pages, scene.Macrocells);
-  EXPECT_EQ(WithCache(Scene(64), 4096).Pages, 64);
-  EXPECT_EQ(WithWholeVolume(scene).Pages, 0);
+  const SceneNeeds scene = Scene(1024); // 262144 macrocells
+  EXPECT_EQ(WithCache(scene, 2048).MapPages, 512);
+  EXPECT_EQ(WithCache(scene, 4096).MapPages, 512);
+  EXPECT_EQ(WithCache(scene, 8192).MapPages, 1024);
+  EXPECT_EQ(WithCache(scene, 8 * 300000).MapPages, scene.Macrocells);
+  EXPECT_EQ(WithCache(Scene(64), 4096).MapPages, 64);
+  EXPECT_EQ(WithWholeVolume(scene).MapPages, 0);
   EXPECT_EQ(WithWholeVolume(scene).Slots, scene.Blocks);
 }
 
 TEST(MemoryPlan, DoesNotDependOnTheCacheAtHand)
 {
-  const PipelineExtent scene = Scene(512);
-  for (const PipelineExtent& now :
+  const SceneNeeds scene = Scene(512);
+  for (const SceneNeeds& now :
     { WithCache(scene, 16384), WithCache(scene, 500000), WithWholeVolume(scene) })
   {
     const MemoryPlan plan = PlanMemory(Limits(), WithBudget(200 * MiB), now);

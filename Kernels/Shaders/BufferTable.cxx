@@ -13,10 +13,10 @@ namespace
 constexpr std::int64_t CacheBytesOfMacrocell =
   offsetof(glsl::Macrocell, Ranges) - offsetof(glsl::Macrocell, Page);
 
-std::int64_t BytesOfMacrocell(const PipelineExtent& extent)
+std::int64_t BytesOfMacrocell(const SceneNeeds& needs)
 {
   const std::int64_t bytes = sizeof(glsl::Macrocell);
-  return extent.Cached ? bytes : bytes - CacheBytesOfMacrocell;
+  return needs.Cached ? bytes : bytes - CacheBytesOfMacrocell;
 }
 
 // Bytes of a block's samples.
@@ -27,7 +27,7 @@ constexpr std::int64_t BytesOfHiddenRow = glsl::BLOCK_SIDE * sizeof(float);
 
 const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers()
 {
-  using E = PipelineExtent;
+  using E = SceneNeeds;
   using namespace Conditions;
   static const std::array<BufferInfo, NumberOfBuffers> buffers = { {
     { Buffer::Control, "control", "CONTROL", Lifetime::Pipeline, Always, "about 1 KB",
@@ -70,7 +70,7 @@ const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers()
       [](const E& e) { return BytesPerSlot(e) * e.Slots; }, Access::Read,
       "decoded samples, and which of their cells are hidden" },
     { Buffer::CacheMap, "cache_map", "CACHE_MAP", Lifetime::Cache, Cached, "about 34 *S*",
-      [](const E& e) -> std::int64_t { return sizeof(glsl::MapPage) * e.Pages; }, Access::None,
+      [](const E& e) -> std::int64_t { return sizeof(glsl::MapPage) * e.MapPages; }, Access::None,
       "map pages: the cache slots of a macrocell's blocks" },
     { Buffer::CacheFreeSlots, "cache_free_slots", "CACHE_FREE_SLOTS", Lifetime::Cache, Cached,
       "8 *S*", [](const E& e) { return 2 * 4 * e.Slots; }, Access::None,
@@ -84,17 +84,17 @@ const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers()
   return buffers;
 }
 
-std::int64_t BytesPerSlot(const PipelineExtent& extent)
+std::int64_t BytesPerSlot(const SceneNeeds& needs)
 {
-  return (extent.Colored ? 2 : 1) * BytesOfBlock + (extent.HiddenWords > 0 ? BytesOfHiddenRow : 0);
+  return (needs.Colored ? 2 : 1) * BytesOfBlock + (needs.HiddenCells ? BytesOfHiddenRow : 0);
 }
 
-std::int64_t BytesOf(Lifetime lifetime, const PipelineExtent& extent)
+std::int64_t BytesOf(Lifetime lifetime, const SceneNeeds& needs)
 {
   std::int64_t bytes = 0;
   for (const BufferInfo& info : PipelineBuffers())
   {
-    bytes += info.Life == lifetime ? info.Bytes(extent) : 0;
+    bytes += info.Life == lifetime ? info.Bytes(needs) : 0;
   }
   return bytes;
 }

@@ -6,7 +6,7 @@
 #define BufferTable_h
 
 #include "Shaders/Conditions.h"
-#include "Shaders/PipelineExtent.h"
+#include "Shaders/SceneNeeds.h"
 
 #include <array>
 #include <cstdint>
@@ -66,15 +66,15 @@ struct BufferInfo
   Lifetime Life;
   Condition Needed;
   const char* Size; ///< in words, what SizeInBytes computes: P pixels, B blocks, S cache slots
-  std::int64_t (*SizeInBytes)(const PipelineExtent&);
+  std::int64_t (*SizeInBytes)(const SceneNeeds&);
   Access Host;
   const char* Purpose;
 
-  bool IsNeeded(const PipelineExtent& extent) const { return this->Needed.Holds(extent); }
+  bool IsNeeded(const SceneNeeds& needs) const { return this->Needed.Holds(needs); }
   /// 0 if the scene does not need the buffer.
-  std::int64_t Bytes(const PipelineExtent& extent) const
+  std::int64_t Bytes(const SceneNeeds& needs) const
   {
-    return this->IsNeeded(extent) ? this->SizeInBytes(extent) : 0;
+    return this->IsNeeded(needs) ? this->SizeInBytes(needs) : 0;
   }
 };
 
@@ -82,9 +82,9 @@ struct BufferInfo
 const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers();
 
 /// Bytes of a cache slot: of its decoded samples, and what is hidden.
-std::int64_t BytesPerSlot(const PipelineExtent& extent);
+std::int64_t BytesPerSlot(const SceneNeeds& needs);
 
 /// Bytes of all buffers of a lifetime.
-std::int64_t BytesOf(Lifetime lifetime, const PipelineExtent& extent);
+std::int64_t BytesOf(Lifetime lifetime, const SceneNeeds& needs);
 
 #endif

@@ -5,17 +5,17 @@
 #ifndef Conditions_h
 #define Conditions_h
 
-#include "Shaders/PipelineExtent.h"
+#include "Shaders/SceneNeeds.h"
 
 struct Condition
 {
   const char* Words;
-  bool (*Holds)(const PipelineExtent&);
+  bool (*Holds)(const SceneNeeds&);
 };
 
 namespace Conditions
 {
-using E = PipelineExtent;
+using E = SceneNeeds;
 constexpr Condition Always = { "always", [](const E&) { return true; } };
 constexpr Condition Cached = { "cache", [](const E& e) { return e.Cached; } };
 constexpr Condition Evicting = { "cache smaller than the volume",
@@ -26,7 +26,7 @@ constexpr Condition CachedColors = { "cache and colours",
   [](const E& e) { return e.Cached && e.Colored; } };
 constexpr Condition DecodedColors = { "no cache, and colours",
   [](const E& e) { return !e.Cached && e.Colored; } };
-constexpr Condition Hidden = { "hidden cells", [](const E& e) { return e.HiddenWords > 0; } };
+constexpr Condition Hidden = { "hidden cells", [](const E& e) { return e.HiddenCells; } };
 constexpr Condition Translucent = { "translucent", [](const E& e) { return e.Translucent; } };
 constexpr Condition StoredNormals = { "lit and opaque",
   [](const E& e) { return e.Lit && !e.Translucent; } };

@@ -5,14 +5,14 @@
 #ifndef HitSections_h
 #define HitSections_h
 
-#include "Shaders/PipelineExtent.h"
+#include "Shaders/SceneNeeds.h"
 
 struct HitSections
 {
-  explicit HitSections(const PipelineExtent& extent)
-    : Color(Isovalue + (extent.SeveralIsovalues ? 1 : 0))
-    , Obstacle(Color + (extent.Colored ? 1 : 0))
-    , Count(Obstacle + (extent.Obstructed ? 1 : 0))
+  explicit HitSections(const SceneNeeds& needs)
+    : Color(Isovalue + (needs.SeveralIsovalues ? 1 : 0))
+    , Obstacle(Color + (needs.Colored ? 1 : 0))
+    , Count(Obstacle + (needs.Obstructed ? 1 : 0))
   {
   }
 

@@ -75,25 +75,25 @@ void WriteBuffers(std::ostream& out, const StageInfo& stage, const std::vector<B
   }
 }
 
-void WriteFeatures(std::ostream& out, const PipelineExtent& extent)
+void WriteFeatures(std::ostream& out, const SceneNeeds& needs)
 {
   for (const BufferInfo& info : PipelineBuffers())
   {
-    out << (info.IsNeeded(extent) ? std::string("#define HAS_") + info.Macro + "\n" : "");
+    out << (info.IsNeeded(needs) ? std::string("#define HAS_") + info.Macro + "\n" : "");
   }
-  const std::pair<bool, const char*> features[] = { { extent.Lit, "LIT" },
-    { extent.SeveralIsovalues, "SEVERAL_ISOVALUES" }, { extent.Translucent, "TRANSLUCENT" },
-    { extent.Obstructed, "OBSTRUCTED" }, { extent.Clipped, "CLIPPED" },
-    { extent.Cropped, "CROPPED" }, { extent.Colored, "COLORED" } };
+  const std::pair<bool, const char*> features[] = { { needs.Lit, "LIT" },
+    { needs.SeveralIsovalues, "SEVERAL_ISOVALUES" }, { needs.Translucent, "TRANSLUCENT" },
+    { needs.Obstructed, "OBSTRUCTED" }, { needs.Clipped, "CLIPPED" }, { needs.Cropped, "CROPPED" },
+    { needs.Colored, "COLORED" } };
   for (const auto& feature : features)
   {
     out << (feature.first ? std::string("#define ") + feature.second + "\n" : "");
   }
 }
 
-void WriteHitSections(std::ostream& out, const PipelineExtent& extent)
+void WriteHitSections(std::ostream& out, const SceneNeeds& needs)
 {
-  const HitSections sections(extent);
+  const HitSections sections(needs);
   out << "#define KEY_SECTION " << sections.Key << "u\n"
       << "#define DEPTH_SECTION " << sections.Depth << "u\n"
       << "#define ISOVALUE_SECTION " << sections.Isovalue << "u\n"
@@ -182,17 +182,17 @@ const std::vector<std::string>& RequiredExtensions()
 }
 
 AssembledShader AssembleShader(const StageInfo& stage, const std::string& file,
-  const std::vector<Buffer>& bound, const PipelineExtent& extent, bool byExtensions,
+  const std::vector<Buffer>& bound, const SceneNeeds& needs, bool byExtensions,
   const ShaderFiles& files)
 {
   std::ostringstream out;
   WriteVersion(out, !stage.Draws(), byExtensions);
   WriteGroupSizes(out, stage);
   WriteBuffers(out, stage, bound);
-  WriteFeatures(out, extent);
-  WriteHitSections(out, extent);
+  WriteFeatures(out, needs);
+  WriteHitSections(out, needs);
   Paster paster(
-    out.str(), files, extent.Cached ? "Cache/CachedBlocks.glsl" : "Cache/DecodedVolume.glsl");
+    out.str(), files, needs.Cached ? "Cache/CachedBlocks.glsl" : "Cache/DecodedVolume.glsl");
   paster.Paste(file);
   return paster.GetShader();
 }

@@ -47,7 +47,7 @@ constexpr const char* ViewportShader = "Output/Viewport.vert";
 /// - the file itself. `#include "X"` pastes X once; `#include BLOCK_ACCESS` the file that knows
 ///   how this scene's decoded blocks are found.
 AssembledShader AssembleShader(const StageInfo& stage, const std::string& file,
-  const std::vector<Buffer>& bound, const PipelineExtent& extent, bool byExtensions,
+  const std::vector<Buffer>& bound, const SceneNeeds& needs, bool byExtensions,
   const ShaderFiles& files = ShaderSources());
 
 /// Replaces the places in a shader's text that begin the lines of a compiler's log by file and

@@ -87,10 +87,10 @@ const StageInfo& InfoOf(Stage stage)
   return PipelineStages()[static_cast<std::size_t>(stage)];
 }
 
-bool StageInfo::IsNeeded(Moment moment, const PipelineExtent& extent) const
+bool StageInfo::IsNeeded(Moment moment, const SceneNeeds& needs) const
 {
   return std::any_of(this->Runs.begin(), this->Runs.end(),
-    [&](const StageRun& run) { return run.When == moment && run.Needed.Holds(extent); });
+    [&](const StageRun& run) { return run.When == moment && run.Needed.Holds(needs); });
 }
 
 Access StageInfo::AccessTo(Buffer buffer) const

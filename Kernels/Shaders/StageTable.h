@@ -65,7 +65,7 @@ struct StageInfo
   std::vector<BufferUse> Buffers; ///< at most 8 at a time, OpenGL 4.3's guarantee
 
   bool Draws() const { return this->GroupSize == 0; }
-  bool IsNeeded(Moment moment, const PipelineExtent& extent) const;
+  bool IsNeeded(Moment moment, const SceneNeeds& needs) const;
   Access AccessTo(Buffer buffer) const;
 };
 

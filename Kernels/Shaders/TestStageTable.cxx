@@ -19,57 +19,57 @@ namespace
 {
 constexpr std::size_t GuaranteedBuffers = 8; // that OpenGL 4.3 lets a stage bind
 
-PipelineExtent SmallExtent(bool cached)
+SceneNeeds SmallScene(bool cached)
 {
-  PipelineExtent extent;
-  extent.Macrocells = extent.Pixels = extent.Slots = extent.Pages = 1;
-  extent.Blocks = 2;
-  extent.Cached = cached;
-  return extent;
+  SceneNeeds needs;
+  needs.Macrocells = needs.Pixels = needs.Slots = needs.MapPages = 1;
+  needs.Blocks = 2;
+  needs.Cached = cached;
+  return needs;
 }
 
-PipelineExtent WithAllFeatures(PipelineExtent extent)
+SceneNeeds WithAllFeatures(SceneNeeds needs)
 {
-  extent.HiddenWords = 1;
-  extent.Lit = extent.Detailed = extent.SeveralIsovalues = extent.Obstructed = true;
-  extent.Clipped = extent.Cropped = extent.Colored = true;
-  return extent;
+  needs.HiddenWords = 1;
+  needs.Lit = needs.Detailed = needs.HiddenCells = needs.SeveralIsovalues = needs.Obstructed = true;
+  needs.Clipped = needs.Cropped = needs.Colored = true;
+  return needs;
 }
 
-PipelineExtent Translucent(PipelineExtent extent)
+SceneNeeds Translucent(SceneNeeds needs)
 {
-  extent.Translucent = true;
-  return extent;
+  needs.Translucent = true;
+  return needs;
 }
 
-std::vector<PipelineExtent> Extents()
+std::vector<SceneNeeds> Scenes()
 {
-  std::vector<PipelineExtent> extents;
+  std::vector<SceneNeeds> scenes;
   for (const bool cached : { true, false })
   {
-    const PipelineExtent plain = SmallExtent(cached);
-    const PipelineExtent all = WithAllFeatures(plain);
-    extents.insert(extents.end(), { all, plain, Translucent(all), Translucent(plain) });
+    const SceneNeeds plain = SmallScene(cached);
+    const SceneNeeds all = WithAllFeatures(plain);
+    scenes.insert(scenes.end(), { all, plain, Translucent(all), Translucent(plain) });
   }
-  return extents;
+  return scenes;
 }
 
-bool IsNeeded(const StageInfo& stage, const PipelineExtent& extent)
+bool IsNeeded(const StageInfo& stage, const SceneNeeds& needs)
 {
   return std::any_of(stage.Runs.begin(), stage.Runs.end(),
-    [&](const StageRun& run) { return run.Needed.Holds(extent); });
+    [&](const StageRun& run) { return run.Needed.Holds(needs); });
 }
 
 // What a stage finds there when it runs: ranges come from the stream before there is a cache, or
 // from the decoded volume when the stream is gone.
-std::vector<Buffer> BoundBuffers(const StageInfo& stage, const PipelineExtent& extent)
+std::vector<Buffer> BoundBuffers(const StageInfo& stage, const SceneNeeds& needs)
 {
-  const Buffer absent = extent.Cached ? Buffer::CacheValues : Buffer::Stream;
+  const Buffer absent = needs.Cached ? Buffer::CacheValues : Buffer::Stream;
   std::vector<Buffer> bound;
   for (const BufferUse& use : stage.Buffers)
   {
     const bool there = stage.Id != Stage::BlockRanges || use.Id != absent;
-    if (there && PipelineBuffers()[static_cast<std::size_t>(use.Id)].IsNeeded(extent))
+    if (there && PipelineBuffers()[static_cast<std::size_t>(use.Id)].IsNeeded(needs))
     {
       bound.push_back(use.Id);
     }
@@ -92,9 +92,9 @@ std::string WithoutAtomics(std::string text)
 }
 
 AssembledShader Assemble(
-  const StageInfo& stage, const PipelineExtent& extent, const ShaderFiles& files = ShaderSources())
+  const StageInfo& stage, const SceneNeeds& needs, const ShaderFiles& files = ShaderSources())
 {
-  return AssembleShader(stage, stage.File, BoundBuffers(stage, extent), extent, false, files);
+  return AssembleShader(stage, stage.File, BoundBuffers(stage, needs), needs, false, files);
 }
 
 // The compiler's log; empty if the shader compiles.
@@ -124,13 +124,13 @@ std::string WithAccess(std::string text, Buffer buffer, const char* qualifier)
 // Is there a scene for which the stage does not compile with this access alone?
 bool NeedsMoreThan(const StageInfo& stage, Buffer buffer, const char* qualifier)
 {
-  const std::vector<PipelineExtent> extents = Extents();
-  return std::any_of(extents.begin(), extents.end(),
-    [&](const PipelineExtent& extent)
+  const std::vector<SceneNeeds> scenes = Scenes();
+  return std::any_of(scenes.begin(), scenes.end(),
+    [&](const SceneNeeds& needs)
     {
-      AssembledShader source = Assemble(stage, extent);
+      AssembledShader source = Assemble(stage, needs);
       source.Text = WithAccess(WithoutAtomics(source.Text), buffer, qualifier);
-      return IsNeeded(stage, extent) && !Compile(stage, source).empty();
+      return IsNeeded(stage, needs) && !Compile(stage, source).empty();
     });
 }
 
@@ -149,15 +149,15 @@ std::string DefinitionsOf(const StageInfo& stage)
 // Does a file that the stage includes compile without what else it includes, in some scene?
 bool CompilesAlone(const StageInfo& stage, const std::string& file)
 {
-  const std::vector<PipelineExtent> extents = Extents();
-  return std::any_of(extents.begin(), extents.end(),
-    [&](const PipelineExtent& extent)
+  const std::vector<SceneNeeds> scenes = Scenes();
+  return std::any_of(scenes.begin(), scenes.end(),
+    [&](const SceneNeeds& needs)
     {
-      const std::vector<ShaderSection> sections = Assemble(stage, extent).Sections;
+      const std::vector<ShaderSection> sections = Assemble(stage, needs).Sections;
       const bool included = std::any_of(sections.begin(), sections.end(),
         [&file](const ShaderSection& section) { return section.File == file; });
       AssembledShader shader =
-        AssembleShader(stage, file, BoundBuffers(stage, extent), extent, false);
+        AssembleShader(stage, file, BoundBuffers(stage, needs), needs, false);
       shader.Text.insert(shader.Text.find('\n') + 1, DefinitionsOf(stage));
       return included && Compile(stage, shader).empty();
     });
@@ -192,9 +192,9 @@ TEST(StageTable, BindsNoMoreBuffersThanGuaranteed)
 {
   for (const StageInfo& stage : PipelineStages())
   {
-    for (const PipelineExtent& extent : Extents())
+    for (const SceneNeeds& needs : Scenes())
     {
-      EXPECT_LE(BoundBuffers(stage, extent).size(), GuaranteedBuffers) << stage.Name;
+      EXPECT_LE(BoundBuffers(stage, needs).size(), GuaranteedBuffers) << stage.Name;
     }
   }
 }
@@ -203,11 +203,11 @@ TEST_F(Shaders, CompileWithTheAccessOfTheTable)
 {
   for (const StageInfo& stage : PipelineStages())
   {
-    for (const PipelineExtent& extent : Extents())
+    for (const SceneNeeds& needs : Scenes())
     {
-      if (IsNeeded(stage, extent))
+      if (IsNeeded(stage, needs))
       {
-        AssembledShader source = Assemble(stage, extent);
+        AssembledShader source = Assemble(stage, needs);
         EXPECT_EQ(Compile(stage, source), "") << stage.Name;
         source.Text = WithoutAtomics(source.Text);
         EXPECT_EQ(Compile(stage, source), "") << stage.Name;
@@ -221,12 +221,12 @@ TEST_F(Shaders, CompileWithExtensions)
 {
   for (const StageInfo& stage : PipelineStages())
   {
-    for (const PipelineExtent& extent : Extents())
+    for (const SceneNeeds& needs : Scenes())
     {
-      if (IsNeeded(stage, extent))
+      if (IsNeeded(stage, needs))
       {
         const AssembledShader source =
-          AssembleShader(stage, stage.File, BoundBuffers(stage, extent), extent, true);
+          AssembleShader(stage, stage.File, BoundBuffers(stage, needs), needs, true);
         EXPECT_EQ(Compile(stage, source), "") << stage.Name;
       }
     }
@@ -271,7 +271,7 @@ TEST_F(Shaders, ErrorsNameFileAndLine)
   files["Shared/Grid.glsl"] = broken.c_str();
   const auto lines = std::count(broken.begin(), broken.end(), '\n');
   const std::string log =
-    Compile(InfoOf(Stage::CastRays), Assemble(InfoOf(Stage::CastRays), SmallExtent(true), files));
+    Compile(InfoOf(Stage::CastRays), Assemble(InfoOf(Stage::CastRays), SmallScene(true), files));
   EXPECT_NE(log.find("Shared/Grid.glsl:" + std::to_string(lines)), std::string::npos) << log;
   EXPECT_NE(log.find("nowhere"), std::string::npos) << log;
 }

@@ -1,20 +1,25 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef PipelineExtent_h
-#define PipelineExtent_h
+// What a scene needs of the GPU: it decides which buffers and stages there are, and how large.
+#ifndef SceneNeeds_h
+#define SceneNeeds_h
 
 #include <cstdint>
 
-/// What the buffers' sizes follow from, and what of it the scene at hand needs.
-struct PipelineExtent
+/// Numbers that the sizes of buffers follow from.
+struct BufferSizes
 {
   std::int64_t Macrocells = 0;
   std::int64_t Pixels = 0;
   std::int64_t Blocks = 0;      ///< of the volume
   std::int64_t Slots = 0;       ///< blocks that the cache holds, or all blocks of the volume
-  std::int64_t Pages = 0;       ///< of the block map
-  std::int64_t HiddenWords = 0; ///< that tell which cells are hidden; 0: none is
+  std::int64_t MapPages = 0;    ///< of the block map; 0 without a cache
+  std::int64_t HiddenWords = 0; ///< that tell which cells are hidden
+};
 
+/// What the scene has. Each combination has its own variants of the stages.
+struct SceneFeatures
+{
   bool Cached = true;    ///< false: the whole volume is decoded, once
   bool Lit = false;      ///< hits need normals
   bool Detailed = false; ///< distinct blocks are counted
@@ -24,16 +29,23 @@ struct PipelineExtent
   bool Clipped = false;     ///< by planes
   bool Cropped = false;     ///< to regions
   bool Colored = false;     ///< another volume gives the colours
+  bool HiddenCells = false; ///< some cells have no surface
 
-  /// The features above, a bit each.
-  std::uint32_t GetFeatures() const
+  /// The features, a bit each.
+  std::uint32_t GetBits() const
   {
     return this->Cached | this->Lit << 1 | this->Detailed << 2 | this->SeveralIsovalues << 3 |
       this->Translucent << 4 | this->Obstructed << 5 | this->Clipped << 6 | this->Cropped << 7 |
-      this->Colored << 8 | (this->HiddenWords > 0) << 9;
+      this->Colored << 8 | this->HiddenCells << 9;
   }
   /// Do rays begin and end in one pass?
   bool IsSinglePass() const { return !this->Cached && !this->Translucent; }
+};
+
+struct SceneNeeds
+  : BufferSizes
+  , SceneFeatures
+{
 };
 
 #endif
