@@ -34,13 +34,9 @@ vtkStandardNewMacro(vtkImageZFPCompress);
 namespace
 {
 //------------------------------------------------------------------------------
-// Returns the active scalars, else the first array that is not VTK's ghost array.
-vtkDataArray* DefaultArray(vtkDataSetAttributes* attributes)
+// Returns the first array that is not VTK's ghost array.
+vtkDataArray* FirstArray(vtkDataSetAttributes* attributes)
 {
-  if (attributes->GetScalars())
-  {
-    return attributes->GetScalars();
-  }
   for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* array = attributes->GetArray(i);
@@ -128,14 +124,20 @@ bool EncodeAll(BlockStream& blocks, vtkDataArray* samples, int component, Sample
 //------------------------------------------------------------------------------
 vtkDataArray* vtkImageZFPCompress::FindDefaultArray(vtkImageData* image, int& association)
 {
-  vtkDataArray* array = DefaultArray(image->GetPointData());
+  vtkPointData* points = image->GetPointData();
+  vtkCellData* cells = image->GetCellData();
   association = vtkCompressedVolume::PointData;
-  if (!array)
+  if (points->GetScalars())
   {
-    array = DefaultArray(image->GetCellData());
-    association = vtkCompressedVolume::CellData;
+    return points->GetScalars();
   }
-  return array;
+  vtkDataArray* firstOfPoints = cells->GetScalars() ? nullptr : FirstArray(points);
+  if (firstOfPoints)
+  {
+    return firstOfPoints;
+  }
+  association = vtkCompressedVolume::CellData;
+  return cells->GetScalars() ? cells->GetScalars() : FirstArray(cells);
 }
 
 //------------------------------------------------------------------------------

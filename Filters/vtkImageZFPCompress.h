@@ -19,7 +19,7 @@
  * are hidden cells of point data. Their values do not matter. See MaskNonFinite for NaN.
  *
  * SetInputArrayToProcess(0, ...) chooses the array. Default: the active point scalars, else the
- * first point array, else the active cell scalars, else the first cell array.
+ * active cell scalars, else the first point array, else the first cell array.
  *
  * If float32 cannot hold the samples, the stream has custom units (see vtkCompressedVolume): of
  * doubles and large integers that differ by less than a 16th of their magnitude, the middle is

@@ -123,8 +123,8 @@ def find_array(image: vtkImageData, array: str | None = None) -> tuple[vtkDataAr
     image : vtkmodules.vtkCommonDataModel.vtkImageData
         With the array.
     array : str, optional
-        Its name; by default the active point scalars, else the first point array, else the active
-        cell scalars, else the first cell array.
+        Its name; by default the active point scalars, else the active cell scalars, else the first
+        point array, else the first cell array.
 
     Returns
     -------

@@ -57,14 +57,15 @@ protected:
 };
 }
 
-TEST_F(InputArraysOfImage, TheDefaultIsTheCompressionFilters)
+TEST_F(InputArraysOfImage, ActiveScalarsGoBeforeFirstArrays)
 {
   this->AddCells("cells");
   this->ExpectValues("cells", vtkCompressedVolume::CellData);
-  this->Image->GetCellData()->SetActiveScalars("cells");
   this->AddPoints("first");
   this->AddPoints("second");
   this->ExpectValues("first", vtkCompressedVolume::PointData);
+  this->Image->GetCellData()->SetActiveScalars("cells");
+  this->ExpectValues("cells", vtkCompressedVolume::CellData);
   this->Image->GetPointData()->SetActiveScalars("second");
   this->ExpectValues("second", vtkCompressedVolume::PointData);
 }
