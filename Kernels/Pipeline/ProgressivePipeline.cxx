@@ -49,11 +49,11 @@ Status ProgressivePipeline::Initialize(std::uint64_t contextId)
   {
     return Status();
   }
-  if (const Status opened = this->Gpu->Initialize(contextId); !opened)
+  if (Status opened = this->Gpu->Initialize(contextId); !opened)
   {
     return opened;
   }
-  if (const Status made = this->Gpu->Buffers.Allocate(Lifetime::Pipeline, this->Needs); !made)
+  if (Status made = this->Gpu->Buffers.Allocate(Lifetime::Pipeline, this->Needs); !made)
   {
     return made;
   }
@@ -162,7 +162,7 @@ Status ProgressivePipeline::DecodeVolume(std::vector<float>& values)
 {
   this->Needs = WithWholeVolume(this->Needs);
   this->Gpu->SetNeeds(this->Needs);
-  if (const Status loaded = this->LoadVolume(); !loaded)
+  if (Status loaded = this->LoadVolume(); !loaded)
   {
     return loaded;
   }

@@ -1,4 +1,4 @@
-"""The source distribution: complete, small, and enough to build, install and render in a fresh environment."""
+"""The source distribution: complete, small, and enough to install and render in a fresh venv."""
 
 import os
 import re
@@ -29,10 +29,10 @@ def archive(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def installed(archive, tmp_path_factory):
-    """The folder of programs of an environment that has nothing of progiso but what is built of the archive.
+    """The folder of programs of an environment whose progiso is built from the archive.
 
-    Other packages are those of the running interpreter, and zfp's sources those of an earlier build: nothing is fetched where
-    they are there.
+    Other packages are those of the running interpreter, and zfp's sources those of an earlier
+    build: nothing is fetched where they are there.
     """
     environment = tmp_path_factory.mktemp("fresh") / "env"
     run(sys.executable, "-m", "venv", environment)
@@ -106,7 +106,8 @@ def test_it_installs_and_renders(installed, tmp_path):
 def test_pyvista_finds_it(installed, tmp_path):
     """An image and a plotter have `progiso` without an import of it."""
     program = (
-        "import pyvista as pv; image = pv.ImageData(dimensions=(8, 8, 8)); image['z'] = image.points[:, 2];"
-        "plotter = pv.Plotter(off_screen=True); plotter.progiso.add_isosurface(image.progiso.compress(), 3.5)"
+        "import pyvista as pv; image = pv.ImageData(dimensions=(8, 8, 8));"
+        "image['z'] = image.points[:, 2]; plotter = pv.Plotter(off_screen=True);"
+        "plotter.progiso.add_isosurface(image.progiso.compress(), 3.5)"
     )
     run(installed / "python", "-c", program, cwd=tmp_path)
