@@ -18,6 +18,7 @@
 #include "Scene/Selection.h"
 #include "Scene/ShownIsovalues.h"
 #include "Scene/ViewState.h"
+#include "Shaders/Glsl.h"
 #include "vtkProgressiveIsosurfaceStatistics.h"
 
 #include "vtkColorTransferFunction.h"
@@ -42,6 +43,9 @@
 #include <algorithm>
 #include <cstdint>
 #include <vector>
+
+// Users see the number in the header: it is SpeculationLimit's largest value and its default.
+static_assert(glsl::MAX_SPECULATION == 64, "SpeculationLimit follows the shaders' constant");
 
 // What a mapper keeps from one render to the next; the mapper's methods join the parts.
 struct vtkProgressiveIsosurfaceMapper::Internals

@@ -137,14 +137,15 @@ void Device::DispatchIndirect(
     [=](GLuint) { glDispatchComputeIndirect(static_cast<GLintptr>(controlOffset)); });
 }
 
-void Device::Draw(Stage stage, const std::array<float, 4>* selected)
+void Device::Draw(Stage stage, const SelectedId* selected)
 {
   this->Run(stage, {},
     [=](GLuint program)
     {
       if (selected)
       {
-        glUniform4fv(glGetUniformLocation(program, "selected"), 1, selected->data());
+        glUniform3fv(glGetUniformLocation(program, "propColor"), 1, selected->PropColor.data());
+        glUniform1i(glGetUniformLocation(program, "cellIdPart"), selected->CellIdPart);
       }
       glBindVertexArray(this->VertexArray);
       glDrawArrays(GL_TRIANGLES, 0, 3);

@@ -26,6 +26,13 @@ struct BoundSegment
   glsl::Segment Place;
 };
 
+/// What Select.frag draws: a prop's colour, or 24 bits of the id of the cell that was hit.
+struct SelectedId
+{
+  std::array<float, 3> PropColor = {};
+  int CellIdPart = 0; ///< 0: the prop's colour, 1: the low bits, 2: the high bits
+};
+
 class Device
 {
 public:
@@ -59,7 +66,7 @@ public:
     Stage stage, std::size_t controlOffset, const std::vector<BoundSegment>& segments = {});
   ///@}
   /// Draws the viewport with a stage, and leaves no binding behind.
-  void Draw(Stage stage, const std::array<float, 4>* selected = nullptr);
+  void Draw(Stage stage, const SelectedId* selected = nullptr);
 
   /// OpenGL errors in the context, where they are counted; after Release() those until then.
   int GetNumberOfGLErrors() const;

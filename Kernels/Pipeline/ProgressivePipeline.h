@@ -19,7 +19,6 @@
 #include "Pipeline/PipelineVolume.h"
 #include "Store/StreamStore.h"
 
-#include <array>
 #include <functional>
 #include <map>
 #include <memory>
@@ -66,7 +65,7 @@ public:
   /// Draws the image with its depth into the current framebuffer and viewport.
   void Composite() { this->Gpu->Draw(Stage::Composite); }
   /// Draws identifiers instead, for a vtkHardwareSelector; see Select.frag.
-  void Select(const std::array<float, 4>& selected) { this->Gpu->Draw(Stage::Select, &selected); }
+  void Select(const SelectedId& selected) { this->Gpu->Draw(Stage::Select, &selected); }
   /// What the rays have met so far.
   HitReadback GetHits();
   /// Decodes the whole volume with the pipeline's own decoder; `values`: 64 for each block.

@@ -4,6 +4,7 @@
 
 #include "Scene/BoundWindow.h"
 #include "Scene/CompressedInput.h"
+#include "Shaders/Glsl.h"
 
 #include "vtkCompressedVolume.h"
 #include "vtkFloatArray.h"
@@ -15,7 +16,7 @@
 
 namespace
 {
-// Copies the samples of blocks, 64 each, in x-fastest order.
+// Copies the samples of blocks in x-fastest order.
 void CopyBlocks(
   const std::vector<float>& blockValues, vtkCompressedVolume* volume, vtkFloatArray* samples)
 {
@@ -24,6 +25,7 @@ void CopyBlocks(
   volume->GetBlocks(blocks);
   samples->SetNumberOfComponents(1);
   samples->SetNumberOfTuples(static_cast<vtkIdType>(dims[0]) * dims[1] * dims[2]);
+  constexpr int side = glsl::BLOCK_SIDE;
   vtkIdType sample = 0;
   for (int z = 0; z < dims[2]; ++z)
   {
@@ -32,8 +34,9 @@ void CopyBlocks(
       for (int x = 0; x < dims[0]; ++x)
       {
         const std::int64_t block =
-          x / 4 + blocks[0] * (y / 4 + static_cast<std::int64_t>(blocks[1]) * (z / 4));
-        samples->SetValue(sample++, blockValues[64 * block + x % 4 + 4 * (y % 4) + 16 * (z % 4)]);
+          x / side + blocks[0] * (y / side + static_cast<std::int64_t>(blocks[1]) * (z / side));
+        const int inBlock = x % side + side * (y % side + side * (z % side));
+        samples->SetValue(sample++, blockValues[glsl::SAMPLES_PER_BLOCK * block + inBlock]);
       }
     }
   }

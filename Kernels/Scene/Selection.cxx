@@ -8,27 +8,27 @@
 #include "vtkCompressedVolume.h"
 #include "vtkHardwareSelector.h"
 
-#include <array>
-
 namespace
 {
-// Finds what Select.frag draws: the prop's colour, or in the last component which half of the
-// cell's id.
-std::array<float, 4> FindSelected(vtkHardwareSelector* selector)
+// Finds what the selector's pass asks for; black if it is none of ours.
+SelectedId FindSelected(vtkHardwareSelector* selector)
 {
-  float prop[3];
-  selector->GetPropColorValue(prop);
+  SelectedId selected;
   switch (selector->GetCurrentPass())
   {
     case vtkHardwareSelector::ACTOR_PASS:
-      return { { prop[0], prop[1], prop[2], 0.0f } };
+      selector->GetPropColorValue(selected.PropColor.data());
+      break;
     case vtkHardwareSelector::CELL_ID_LOW24:
-      return { { 0.0f, 0.0f, 0.0f, 1.0f } };
+      selected.CellIdPart = 1;
+      break;
     case vtkHardwareSelector::CELL_ID_HIGH24:
-      return { { 0.0f, 0.0f, 0.0f, 2.0f } };
+      selected.CellIdPart = 2;
+      break;
     default:
-      return { { 0.0f, 0.0f, 0.0f, 0.0f } };
+      break;
   }
+  return selected;
 }
 
 vtkIdType CountCells(vtkCompressedVolume* volume)
@@ -46,7 +46,7 @@ void DrawSelection(vtkHardwareSelector* selector, vtkOpenGLState* state,
   vtkCompressedVolume* volume, ProgressivePipeline& pipeline)
 {
   selector->BeginRenderProp();
-  const std::array<float, 4> selected = FindSelected(selector);
+  const SelectedId selected = FindSelected(selector);
   selector->UpdateMaximumCellId(CountCells(volume));
   const DrawingState drawing(state, false);
   pipeline.Select(selected);

@@ -6,8 +6,8 @@
 #include "Surface/Hits.glsl"
 #include "Output/WindowDepth.glsl"
 
-// The prop's identifier as a colour; w: which 24 bits of a cell's are drawn instead, 0: none.
-uniform vec4 selected;
+uniform vec3 propColor;
+uniform int cellIdPart; // 0: the prop's colour is drawn; 1, 2: the low, the high bits of a cell's id
 
 layout(location = 0) out vec4 fragmentColor;
 
@@ -36,6 +36,5 @@ void main()
   }
   float t = DepthOf(pixel);
   gl_FragDepth = WindowDepth(t);
-  int part = int(selected.w);
-  fragmentColor = vec4(part == 0 ? selected.rgb : CellColor(pixel, t, part), 1.0);
+  fragmentColor = vec4(cellIdPart == 0 ? propColor : CellColor(pixel, t, cellIdPart), 1.0);
 }
