@@ -443,7 +443,8 @@ bool vtkProgressiveIsosurfaceMapper::Succeeds(const Status& status)
 // An error of the pipeline may leave anything behind: the next render begins with nothing.
 bool vtkProgressiveIsosurfaceMapper::Continues(const Status& pipelineStatus)
 {
-  const Status status = pipelineStatus; // releasing resets the pipeline's
+  // releasing resets the pipeline's
+  const Status status = pipelineStatus; // NOLINT(performance-unnecessary-copy-initialization)
   if (!status)
   {
     this->ReleaseGraphics(this->Impl->Window.Get());

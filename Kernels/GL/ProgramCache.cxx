@@ -71,7 +71,7 @@ Status ProgramCache::Get(
     program = found->second;
     return Status();
   }
-  const Status built = this->Build(stage, bound, needs, program);
+  Status built = this->Build(stage, bound, needs, program);
   if (built) // else the next render tries, and fails, again
   {
     this->Programs[variant] = program;

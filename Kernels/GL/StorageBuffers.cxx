@@ -74,7 +74,7 @@ Status StorageBuffers::Allocate(const BufferInfo& info, std::int64_t bytes)
   {
     const std::int64_t plain =
       info.Id == Buffer::CacheValues ? LargestPlainValues : LargestPlainBuffer;
-    const Status made = MakeStorageBuffer(this->Gl, this->Names[i], bytes, info.Name, plain);
+    Status made = MakeStorageBuffer(this->Gl, this->Names[i], bytes, info.Name, plain);
     if (!made)
     {
       return made;
