@@ -7,7 +7,7 @@
 #include "Output/WindowDepth.glsl"
 
 uniform vec3 propColor;
-uniform int cellIdPart; // 0: the prop's colour is drawn; 1, 2: the low, the high bits of a cell's id
+uniform int cellIdPart; // 0: the prop's colour is drawn; 1, 2: low and high bits of a cell's id
 
 layout(location = 0) out vec4 fragmentColor;
 
