@@ -59,7 +59,7 @@ def test_threads_do_not_show(threads):
 @pytest.mark.parametrize("kind", TYPES)
 def test_scalar_types(kind, cells):
     values = (marschner_lobb(9) * 100).astype(kind)
-    image = make_image(values, "name", cells)
+    image = make_image(values, "name", cells=cells)
     compressed = progiso.compress(image, rate=16)
     assert (
         metadata(compressed, "ScalarType")[0]
