@@ -316,17 +316,13 @@ bool vtkProgressiveIsosurfaceMapper::UpdateScene(vtkRenderer* renderer, vtkVolum
   }
   const Obstacles obstacles = scene.Translucent ? FindObstacles(renderer, volume) : Obstacles();
   scene.Obstructed = obstacles.Count > 0;
-  const bool continues = impl.View.Update(renderer, scene, obstacles, this->MakePalette(volume));
-  return this->UpdatePipeline(!continues);
-}
-
-std::vector<float> vtkProgressiveIsosurfaceMapper::MakePalette(vtkVolume* volume)
-{
-  const CompressedInput& colors = this->Impl->Inputs.GetColors();
   vtkScalarsToColors* table = this->ColorLookupTable
     ? this->ColorLookupTable
     : volume->GetProperty()->GetRGBTransferFunction();
-  return colors.GetImage() ? ::MakePalette(table, colors.GetVolume()) : std::vector<float>();
+  const CompressedInput& colors = impl.Inputs.GetColors();
+  const bool continues = impl.View.Update(renderer, scene, obstacles,
+    MakePalette(table, colors.GetImage() ? colors.GetVolume() : nullptr));
+  return this->UpdatePipeline(!continues);
 }
 
 // Gives the pipeline its settings and the scene, and starts another image if need be.

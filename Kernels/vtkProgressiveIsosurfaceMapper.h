@@ -49,7 +49,6 @@
 #include "vtkVolumeMapper.h"
 
 #include <memory> // for the implementation
-#include <vector> // for the palette
 
 class Status;
 class vtkAlgorithmOutput;
@@ -319,7 +318,6 @@ private:
   bool UpdateColors(vtkImageData* image);
   bool BindWindow(vtkOpenGLRenderWindow* window);
   bool UpdateScene(vtkRenderer* renderer, vtkVolume* volume);
-  std::vector<float> MakePalette(vtkVolume* volume);
   bool UpdatePipeline(bool newImage);
   bool Refine(vtkOpenGLRenderWindow* window);
   bool MayRefineLater(vtkOpenGLRenderWindow* window);

@@ -27,7 +27,7 @@ void UniformBuffers::Release()
 {
   glDeleteBuffers(static_cast<GLsizei>(this->Blocks.size()), this->Blocks.data());
   this->Blocks.fill(0);
-  this->UploadPalette({});
+  this->UploadPalette(std::nullopt);
 }
 
 void UniformBuffers::Upload(int binding, const void* block)
@@ -37,10 +37,10 @@ void UniformBuffers::Upload(int binding, const void* block)
   glBindBuffer(GL_UNIFORM_BUFFER, 0);
 }
 
-void UniformBuffers::UploadPalette(const std::vector<float>& palette)
+void UniformBuffers::UploadPalette(const std::optional<glsl::Palette>& palette)
 {
-  this->PaletteBytes = static_cast<std::int64_t>(palette.size() * sizeof(float));
-  if (palette.empty())
+  this->PaletteBytes = palette ? static_cast<std::int64_t>(sizeof(glsl::Palette)) : 0;
+  if (!palette)
   {
     glDeleteBuffers(1, &this->Palette);
     this->Palette = 0;
@@ -51,8 +51,7 @@ void UniformBuffers::UploadPalette(const std::vector<float>& palette)
     glGenBuffers(1, &this->Palette);
   }
   glBindBuffer(GL_UNIFORM_BUFFER, this->Palette);
-  glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(this->PaletteBytes), palette.data(),
-    GL_DYNAMIC_DRAW);
+  glBufferData(GL_UNIFORM_BUFFER, sizeof(glsl::Palette), &palette.value(), GL_DYNAMIC_DRAW);
   glBindBuffer(GL_UNIFORM_BUFFER, 0);
 }
 

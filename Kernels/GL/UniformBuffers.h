@@ -9,7 +9,7 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
+#include <optional>
 
 class UniformBuffers
 {
@@ -24,8 +24,8 @@ public:
   void Upload(const glsl::Volume& volume) { this->Upload(VOLUME_BINDING, &volume); }
   void Upload(const glsl::Cache& cache) { this->Upload(CACHE_BINDING, &cache); }
   ///@}
-  /// Colours over a range of values, see Shading.glsl; an empty palette frees its buffer.
-  void UploadPalette(const std::vector<float>& palette);
+  /// Colours over a range of values, see Shading.glsl; none frees the buffer.
+  void UploadPalette(const std::optional<glsl::Palette>& palette);
 
   void Bind() const;
   static void Unbind();

@@ -96,7 +96,7 @@ void ProgressivePipeline::SetVolume(const PipelineVolume& volume)
   this->Policy.Reset();
 }
 
-void ProgressivePipeline::SetPalette(const std::vector<float>& palette)
+void ProgressivePipeline::SetPalette(const std::optional<glsl::Palette>& palette)
 {
   this->Gpu->Uniforms.UploadPalette(palette);
 }

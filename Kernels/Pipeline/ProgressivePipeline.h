@@ -22,6 +22,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -44,7 +45,7 @@ public:
   /// Replaces the volume; it is uploaded when a scene needs it.
   void SetVolume(const PipelineVolume& volume);
   /// Colours for the volume that gives them, see Shading.glsl; empty without such a volume.
-  void SetPalette(const std::vector<float>& palette);
+  void SetPalette(const std::optional<glsl::Palette>& palette);
   /// Forgets all decoded blocks before the next scene.
   void EmptyCache() { this->CacheToEmpty = true; }
   /// Makes ready what the scene needs: the volume's macrocells, the cache, the image's buffers. An

@@ -5,13 +5,17 @@
 #ifndef Palette_h
 #define Palette_h
 
-#include <vector>
+#include "Shaders/Glsl.h"
+
+#include <optional>
 
 class vtkCompressedVolume;
 class vtkScalarsToColors;
 
-/// Samples a table at PALETTE_SIZE values of its range. The first four numbers are the range's
-/// beginning in the units of the stream, the inverse of its length, and two zeros; RGBA follow.
-std::vector<float> MakePalette(vtkScalarsToColors* table, vtkCompressedVolume* colors);
+/// Samples a table at PALETTE_SIZE values of its range, which the palette has in the units of the
+/// colours' stream. None without such a volume.
+std::optional<glsl::Palette> MakePalette(vtkScalarsToColors* table, vtkCompressedVolume* colors);
+
+bool IsSamePalette(const std::optional<glsl::Palette>& a, const std::optional<glsl::Palette>& b);
 
 #endif

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
+#include <optional>
 
 namespace
 {
@@ -30,7 +30,7 @@ protected:
   vtkNew<vtkRenderer> Renderer;
   PipelineScene Scene;
   Obstacles Props;
-  std::vector<float> Palette;
+  std::optional<glsl::Palette> Palette;
   ViewState State;
 };
 }
@@ -78,7 +78,7 @@ TEST_F(ViewStateOfRenders, ANewLookRestartsOnlyTranslucentImages)
   this->GoesOn();
   this->Scene.Look.Ambient = 0.75f;
   EXPECT_FALSE(this->GoesOn());
-  this->Palette = { 1.0f };
+  this->Palette.emplace();
   EXPECT_FALSE(this->GoesOn());
   this->Props.Time = 7;
   EXPECT_FALSE(this->GoesOn());
@@ -91,9 +91,14 @@ TEST_F(ViewStateOfRenders, TellsOfANewPalette)
   EXPECT_TRUE(this->State.HasNewPalette());
   this->GoesOn();
   EXPECT_FALSE(this->State.HasNewPalette());
-  this->Palette = { 1.0f, 2.0f };
+  this->Palette.emplace();
   EXPECT_TRUE(this->GoesOn());
   EXPECT_TRUE(this->State.HasNewPalette());
+  this->Palette->Low = 1.0f;
+  EXPECT_TRUE(this->GoesOn());
+  EXPECT_TRUE(this->State.HasNewPalette());
+  EXPECT_TRUE(this->GoesOn());
+  EXPECT_FALSE(this->State.HasNewPalette());
 }
 
 TEST_F(ViewStateOfRenders, ViewsThatTakeTurnsAreNotSettled)

@@ -3,6 +3,7 @@
 #include "Scene/ViewState.h"
 
 #include "Scene/HitGeometry.h"
+#include "Scene/Palette.h"
 
 #include "vtkCamera.h"
 #include "vtkMatrix4x4.h"
@@ -88,12 +89,12 @@ ViewState::ViewState()
 ViewState::~ViewState() = default;
 
 bool ViewState::Update(vtkRenderer* renderer, const PipelineScene& scene,
-  const Obstacles& obstacles, const std::vector<float>& palette)
+  const Obstacles& obstacles, const std::optional<glsl::Palette>& palette)
 {
   vtkCamera* camera = renderer->GetActiveCamera();
   const int eye = camera->GetLeftEye();
   const bool sameView = renderer == this->Renderer && eye == this->Eye;
-  const bool samePalette = palette == this->Palette;
+  const bool samePalette = IsSamePalette(palette, this->Palette);
   const bool continues = this->HasScene && sameView && this->HasSameImage(scene, obstacles) &&
     (samePalette || !scene.Translucent);
 

@@ -9,7 +9,7 @@
 #include "vtkNew.h"
 #include "vtkType.h"
 
-#include <vector>
+#include <optional>
 
 class vtkMatrix4x4;
 class vtkRenderer;
@@ -45,13 +45,13 @@ public:
   /// Takes what a render shows. Returns whether the image continues: its hits are the same. A new
   /// look restarts only translucent images, whose layers are blended as they are found.
   bool Update(vtkRenderer* renderer, const PipelineScene& scene, const Obstacles& obstacles,
-    const std::vector<float>& palette);
+    const std::optional<glsl::Palette>& palette);
   /// Forgets the scene: the next render starts another image.
   void Forget() { this->HasScene = false; }
 
   bool IsKnown() const { return this->HasScene; }
   const PipelineScene& GetScene() const { return this->Scene; }
-  const std::vector<float>& GetPalette() const { return this->Palette; }
+  const std::optional<glsl::Palette>& GetPalette() const { return this->Palette; }
   /// Whether the last Update() brought other colours, or began anew.
   bool HasNewPalette() const { return this->NewPalette; }
   bool IsOf(vtkRenderer* renderer) const { return this->Renderer == renderer; }
@@ -72,7 +72,7 @@ private:
 
   PipelineScene Scene;
   bool HasScene = false;
-  std::vector<float> Palette;
+  std::optional<glsl::Palette> Palette;
   bool NewPalette = false;
   Obstacles SceneObstacles;
   vtkNew<vtkMatrix4x4> EyeToWorld;
