@@ -71,7 +71,7 @@ TEST(BitCopy, TakesStreamsAtAnyAddress)
   EXPECT_EQ(copied, Expected(from, 5, Words(4), 0, 200));
 }
 
-// So that a stream's last word may be the end of its memory.
+// The last word of a stream may be the last of its memory: the copy must not read beyond it.
 TEST(BitCopy, ReadsNoWordWithoutBitsToCopy)
 {
   const Words from = RandomWords(1, 4);

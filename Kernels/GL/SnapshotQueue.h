@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 // What the GPU tells the CPU after each pass. Snapshots arrive in the order in which they were
-// requested, and the GPU goes on meanwhile.
+// requested, and the GPU continues meanwhile.
 #ifndef SnapshotQueue_h
 #define SnapshotQueue_h
 

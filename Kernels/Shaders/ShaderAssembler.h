@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 // Makes complete GLSL sources: what the tables of stages and buffers say, then a file with all
-// that it includes. Compile errors are told by the file and line that a developer knows.
+// that it includes. Translates lines in compile errors back to the files and lines of the sources.
 #ifndef ShaderAssembler_h
 #define ShaderAssembler_h
 

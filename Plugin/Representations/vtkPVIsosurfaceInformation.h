@@ -15,7 +15,7 @@
 #include "vtkPVInformation.h"
 #include "vtkProgIsoRepresentationsModule.h" // for export macro
 
-#include <vector> // for what is told of each pass
+#include <vector> // for the figures of each pass
 
 class VTKPROGISOREPRESENTATIONS_EXPORT vtkPVIsosurfaceInformation : public vtkPVInformation
 {

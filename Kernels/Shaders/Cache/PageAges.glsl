@@ -2,7 +2,7 @@
 
 #include "Shared/Buffers.glsl"
 
-// Passes since the page was used last; beyond the largest age they are not told apart.
+// Passes since the page was used last; larger ages count as the largest.
 uint AgeOf(uint page)
 {
   return min(control.PassSerial - 1u - mapPages[page].Stamp, PASS_AGES - 1u);

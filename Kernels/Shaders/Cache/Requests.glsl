@@ -25,7 +25,7 @@ uint TakePage(uint macrocell)
   return page;
 }
 
-// Takes places in the list of requests, and makes DecodeBlocks.comp have an invocation for each.
+// Reserves places in the list of requests, and sizes the dispatch of DecodeBlocks to match.
 uint ReserveRequests(uint count)
 {
   uint at = atomicAdd(control.Requests, count);

@@ -1,4 +1,4 @@
-// Rays, and what orders that which they meet: the parameters t of the voxel planes that they cross.
+// Camera rays, and the parameters t of the voxel planes that they cross: t orders all they meet.
 // A plane's t is one formula of the ray and the plane's integer index, in double precision. Every
 // stage in every pass therefore finds the same t for the same plane, and neighbouring cells share
 // their face's t to the last bit. Nothing accumulates and nothing is derived back from t, so that

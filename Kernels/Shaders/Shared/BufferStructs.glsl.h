@@ -35,7 +35,7 @@ STORAGE_BLOCK(Control, BUFFER_CONTROL)
   uint Requests;       // blocks asked for, each once
   uint DeniedRequests; // of these, blocks for which the cache had no room
   uint VisibleBlocks;  // distinct blocks that were intersected; only for detailed statistics
-  uint ActiveBlocks;   // likewise, with the neighbours that rays reach into
+  uint ActiveBlocks;   // these, and the neighbours that rays reach into
   uint TouchedSlots;   // cached blocks on map pages that this image used
   // the cache: rings of free slots and of free map pages, where they begin and how many there are
   uint FreeSlotsBegin;
