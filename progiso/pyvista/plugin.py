@@ -1,6 +1,7 @@
 """``plotter.progiso``: isosurfaces in pyvista's plotters.
 
-pyvista imports this module by its entry point when a plotter's ``progiso`` is first used.
+This module is imported right after pyvista where progiso is imported, too, and else by pyvista,
+through the entry point, when a plotter's ``progiso`` is first used.
 """
 
 from __future__ import annotations
