@@ -56,6 +56,7 @@ struct vtkProgressiveIsosurfaceMapper::Internals
   vtkTimeStamp HandOverTime; ///< of the inputs to the pipeline
   ViewState View;
   RefinementTimer Timer;
+  double InputMilliseconds = 0.0; ///< that the inputs took when they last changed
   double TotalMilliseconds = 0.0; ///< of the present image
 };
 
@@ -171,9 +172,14 @@ bool vtkProgressiveIsosurfaceMapper::IsPeeled(vtkVolume* volume)
 void vtkProgressiveIsosurfaceMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
 {
   const vtkSmartPointer<vtkProgressiveIsosurfaceMapper> alive = this; // whatever observers do
+  const Stopwatch stopwatch;
   if (!this->CanRender(renderer, volume) || !this->UpdateInputs())
   {
     return;
+  }
+  if (this->Impl->HandOverTime < this->Impl->Inputs.GetTime())
+  {
+    this->Impl->InputMilliseconds = stopwatch.GetMilliseconds();
   }
   auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
   window->MakeCurrent();
@@ -322,11 +328,13 @@ bool vtkProgressiveIsosurfaceMapper::UpdateScene(vtkRenderer* renderer, vtkVolum
   const CompressedInput& colors = impl.Inputs.GetColors();
   const bool continues = impl.View.Update(renderer, scene, obstacles,
     MakePalette(table, colors.GetImage() ? colors.GetVolume() : nullptr));
-  return this->UpdatePipeline(!continues);
+  const bool mayWait = !renderer->GetSelector() && this->MayRefineLater(impl.Window.Get());
+  return this->UpdatePipeline(!continues, mayWait);
 }
 
-// Gives the pipeline its settings and the scene, and starts another image if need be.
-bool vtkProgressiveIsosurfaceMapper::UpdatePipeline(bool newImage)
+// Gives the pipeline its settings and the scene, and starts another image if need be. `mayWait`:
+// the image may start at a later render, while programs are being compiled.
+bool vtkProgressiveIsosurfaceMapper::UpdatePipeline(bool newImage, bool mayWait)
 {
   Internals& impl = *this->Impl;
   if (impl.View.HasNewPalette())
@@ -343,8 +351,13 @@ bool vtkProgressiveIsosurfaceMapper::UpdatePipeline(bool newImage)
   {
     return false;
   }
-  if (!impl.Pipeline.IsStarted())
+  if (!impl.Pipeline.IsStarted() &&
+    (!mayWait || impl.Pipeline.AwaitPrograms(1e3 * this->TimeAllowance)))
   {
+    if (!this->Continues(impl.Pipeline.PrepareVolume()))
+    {
+      return false;
+    }
     const Stopwatch stopwatch;
     impl.Pipeline.Start();
     impl.TotalMilliseconds = stopwatch.GetMilliseconds();
@@ -356,6 +369,10 @@ bool vtkProgressiveIsosurfaceMapper::UpdatePipeline(bool newImage)
 bool vtkProgressiveIsosurfaceMapper::Refine(vtkOpenGLRenderWindow* window)
 {
   Internals& impl = *this->Impl;
+  if (!impl.Pipeline.IsStarted())
+  {
+    return true; // programs are still being compiled
+  }
   const Stopwatch stopwatch;
   const bool interactive = this->MayRefineLater(window);
   const auto stop = [&]()
@@ -421,6 +438,7 @@ void vtkProgressiveIsosurfaceMapper::UpdateStatistics()
   const std::int64_t pixels = static_cast<std::int64_t>(size[0]) * size[1];
   ImageStatistics image = CollectStatistics(this->Impl->Pipeline, pixels, this->DetailedStatistics);
   image.TotalMilliseconds = this->Impl->TotalMilliseconds;
+  image.InputMilliseconds = this->Impl->InputMilliseconds;
   this->Statistics->SetImage(image);
 }
 
@@ -511,7 +529,7 @@ bool vtkProgressiveIsosurfaceMapper::WasRenderedIn(vtkRenderer* renderer)
 
 bool vtkProgressiveIsosurfaceMapper::HasImage()
 {
-  return this->Impl->View.IsKnown() && this->Impl->Window.Get();
+  return this->Impl->View.IsKnown() && this->Impl->Window.Get() && this->Impl->Pipeline.IsStarted();
 }
 
 bool vtkProgressiveIsosurfaceMapper::GetHit(int x, int y, double position[3], double& isovalue)

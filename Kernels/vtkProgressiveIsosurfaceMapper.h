@@ -318,7 +318,7 @@ private:
   bool UpdateColors(vtkImageData* image);
   bool BindWindow(vtkOpenGLRenderWindow* window);
   bool UpdateScene(vtkRenderer* renderer, vtkVolume* volume);
-  bool UpdatePipeline(bool newImage);
+  bool UpdatePipeline(bool newImage, bool mayWait);
   bool Refine(vtkOpenGLRenderWindow* window);
   bool MayRefineLater(vtkOpenGLRenderWindow* window);
   void Select(vtkHardwareSelector* selector);

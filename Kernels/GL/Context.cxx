@@ -94,6 +94,9 @@ void Context::AskLimits()
   this->Limits.Software = IsSoftwareRenderer();
   this->Limits.SparseBuffers =
     offered.count("GL_ARB_sparse_buffer") > 0 && glBufferStorage && glBufferPageCommitmentARB;
+  // llvmpipe offers it, too, but compiles a stage where it first runs
+  this->Limits.BackgroundCompiler =
+    !this->Limits.Software && offered.count("GL_KHR_parallel_shader_compile") > 0;
   this->Limits.DeviceMemory = AskDeviceMemory(offered);
   GLint64 largest = 0;
   glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &largest);

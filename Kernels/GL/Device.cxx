@@ -29,7 +29,8 @@ Status Device::Initialize(std::uint64_t contextId)
   {
     return this->Gl.GetStatus();
   }
-  this->Programs = ProgramCache::OfContext(contextId, this->Gl.UsesExtensions());
+  this->Programs =
+    ProgramCache::OfContext(contextId, this->Gl.UsesExtensions(), this->Gl.GetLimits());
   this->Programs->CountGLErrors();
   this->Timer.SetSoftware(this->Gl.GetLimits().Software);
   this->Uniforms.Initialize();
@@ -68,32 +69,45 @@ void Device::SetNeeds(const SceneNeeds& needs)
   this->Timer.SetDetailed(needs.Detailed);
 }
 
+void Device::Request(Urgency urgency)
+{
+  this->Programs->Request(ProgramsOf(urgency, this->Needs), this->Needs);
+}
+
+bool Device::IsReady(Stage stage)
+{
+  return this->Programs->IsReady(stage, this->Needs);
+}
+
+bool Device::IsReady(Urgency urgency)
+{
+  const std::vector<Stage> stages = ProgramsOf(urgency, this->Needs);
+  return std::all_of(
+    stages.begin(), stages.end(), [this](Stage stage) { return this->IsReady(stage); });
+}
+
+std::vector<ProgramTime> Device::GetProgramTimes() const
+{
+  return this->Programs ? this->Programs->GetTimes(this->Needs) : std::vector<ProgramTime>();
+}
+
 // Binds a stage's program and buffers; 0 after an error.
 GLuint Device::Bind(Stage stage, const BoundSegment* segment)
 {
-  std::vector<Buffer> bound;
-  std::vector<GLuint> names;
-  for (const BufferUse& use : InfoOf(stage).Buffers)
-  {
-    const bool isStream = use.Id == Buffer::Stream || use.Id == Buffer::ColorStream;
-    const GLuint name = isStream && segment ? segment->Buffer : this->Buffers.GetName(use.Id);
-    if (name)
-    {
-      bound.push_back(use.Id);
-      names.push_back(name);
-    }
-  }
   GLuint program = 0;
-  if (const Status built = this->Programs->Get(stage, bound, this->Needs, program); !built)
+  if (const Status built = this->Programs->Get(stage, this->Needs, program); !built)
   {
     this->Gl.Fail(built);
     return 0;
   }
   glUseProgram(program);
   this->Uniforms.Bind();
-  for (std::size_t i = 0; i < names.size(); ++i)
+  GLuint binding = 0;
+  for (const Buffer buffer : InfoOf(stage).BuffersOf(this->Needs))
   {
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(i), names[i]);
+    const bool isStream = buffer == Buffer::Stream || buffer == Buffer::ColorStream;
+    const GLuint name = isStream && segment ? segment->Buffer : this->Buffers.GetName(buffer);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding++, name);
   }
   if (segment)
   {

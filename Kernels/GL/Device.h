@@ -59,6 +59,13 @@ public:
   /// Chooses the variants of the stages by what the scene needs.
   void SetNeeds(const SceneNeeds& needs);
 
+  ///@{ The programs of these variants: see ProgramCache.
+  void Request(Urgency urgency);
+  bool IsReady(Stage stage);
+  bool IsReady(Urgency urgency);
+  std::vector<ProgramTime> GetProgramTimes() const;
+  ///@}
+
   ///@{ Runs a stage with so many work groups, or as many as the control block says at an offset. A
   /// stage that reads a stream runs once for each of its segments. Nothing runs after an error.
   void Dispatch(Stage stage, std::int64_t groups, const std::vector<BoundSegment>& segments = {});

@@ -8,10 +8,11 @@
 /// What an OpenGL context allows, as far as it decides how buffers are made and work is divided.
 struct DeviceLimits
 {
-  std::int64_t LargestBuffer = 0; ///< bytes of one storage buffer
-  std::int64_t DeviceMemory = 0;  ///< bytes of graphics memory; 0: the GPU does not tell
-  bool Software = false;          ///< no GPU: Mesa's llvmpipe
-  bool SparseBuffers = false;     ///< buffers may be committed page by page
+  std::int64_t LargestBuffer = 0;  ///< bytes of one storage buffer
+  std::int64_t DeviceMemory = 0;   ///< bytes of graphics memory; 0: the GPU does not tell
+  bool Software = false;           ///< no GPU: Mesa's llvmpipe
+  bool SparseBuffers = false;      ///< buffers may be committed page by page
+  bool BackgroundCompiler = false; ///< the driver compiles in threads of its own, and tells when
 };
 
 #endif

@@ -81,6 +81,11 @@ void StageTimer::StartImage(const std::set<Stage>& kept)
   this->ImageStart = this->Mark();
 }
 
+double StageTimer::GetPreparationMilliseconds()
+{
+  return this->Milliseconds(this->PreparationStart, this->PreparationEnd);
+}
+
 void StageTimer::EndPass()
 {
   this->PassEnds.push_back(this->Mark());
@@ -106,6 +111,9 @@ void StageTimer::EndStage()
 void StageTimer::Forget()
 {
   this->RecycleAll();
+  this->Recycle(this->PreparationStart);
+  this->Recycle(this->PreparationEnd);
+  this->PreparationStart = this->PreparationEnd = Timestamp();
   this->Stages.clear();
 }
 

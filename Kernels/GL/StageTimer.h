@@ -28,6 +28,12 @@ public:
   void EndPass();
   void BeginStage(Stage stage);
   void EndStage();
+  ///@{ Times what prepares a volume, apart from its images.
+  void BeginPreparation() { this->PreparationStart = this->Mark(); }
+  void EndPreparation() { this->PreparationEnd = this->Mark(); }
+  /// Waits for the GPU.
+  double GetPreparationMilliseconds();
+  ///@}
   /// Forgets all that has run.
   void Forget();
   void Release();
@@ -59,6 +65,7 @@ private:
   bool Detailed = false;
   Stopwatch Clock;
   std::vector<GLuint> SpareQueries;
+  Timestamp PreparationStart, PreparationEnd;
   Timestamp ImageStart;
   std::vector<Timestamp> PassEnds;
   std::vector<StageRun> Runs; ///< not yet added up

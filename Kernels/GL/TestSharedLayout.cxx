@@ -200,7 +200,7 @@ protected:
     this->Window->SetSize(16, 16);
     this->Window->Render();
     ASSERT_TRUE(this->Gl.Open()) << this->Gl.GetStatus().GetMessage();
-    this->Programs = std::make_unique<ProgramCache>(this->Gl.UsesExtensions());
+    this->Programs = std::make_unique<ProgramCache>(this->Gl.UsesExtensions(), false);
   }
   void TearDown() override { this->Programs->Release(); }
 
@@ -210,20 +210,10 @@ protected:
     std::map<std::string, GLuint> programs;
     for (const StageInfo& stage : PipelineStages())
     {
-      std::vector<Buffer> bound;
-      for (const BufferUse& use : stage.Buffers)
-      {
-        if (PipelineBuffers()[static_cast<std::size_t>(use.Id)].IsNeeded(needs))
-        {
-          bound.push_back(use.Id);
-        }
-      }
-      const bool needed = std::any_of(stage.Runs.begin(), stage.Runs.end(),
-        [&](const StageRun& run) { return run.Needed.Holds(needs); });
-      if (needed)
+      if (stage.IsNeeded(needs))
       {
         GLuint& program = programs[stage.Name];
-        const Status built = this->Programs->Get(stage.Id, bound, needs, program);
+        const Status built = this->Programs->Get(stage.Id, needs, program);
         EXPECT_TRUE(built) << built.GetMessage();
       }
     }

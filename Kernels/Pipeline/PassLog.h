@@ -33,6 +33,11 @@ public:
   bool AwaitsPasses() const { return this->Known < this->Submitted; }
   /// Live rays after the last known pass.
   std::int64_t GetRemainingRays() const { return this->RemainingRays; }
+  /// Did the last known pass ask for blocks in vain?
+  bool WasRefusedBlocks() const
+  {
+    return !this->Passes.empty() && this->Passes.back().RefusedBlocks > 0;
+  }
   /// Have many passes in a row neither met, nor decoded, nor finished anything?
   bool IsStuck() const;
   const std::vector<TimedPass>& GetPasses() const { return this->Passes; }

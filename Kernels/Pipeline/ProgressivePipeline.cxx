@@ -5,9 +5,11 @@
 #include "GL/DepthCapture.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <limits>
 #include <set>
+#include <thread>
 
 namespace
 {
@@ -15,6 +17,7 @@ constexpr std::int64_t MaximumResetGroups = 4096; // each resets many slots wher
 constexpr int PassesAhead = 3; // submitted before the CPU knows whether they are needed
 // Where fewer than one pixel of so many has a live ray, each ray gets a work group.
 constexpr std::uint32_t PixelsPerStraggler = 32;
+constexpr std::chrono::milliseconds PollingInterval(1); // of programs that are being compiled
 
 glsl::Volume DescribeVolume(const VolumeSize& size, const PipelineVolume& volume)
 {
@@ -101,12 +104,11 @@ void ProgressivePipeline::SetPalette(const std::optional<glsl::Palette>& palette
   this->Gpu->Uniforms.UploadPalette(palette);
 }
 
-// Uploads the streams and finds the values' range in each block. Where the whole volume is decoded
-// the streams go again.
 Status ProgressivePipeline::LoadVolume()
 {
   this->Gpu->Timer.Forget();
   this->VolumeLoaded = false;
+  this->VolumePrepared = false;
   Status status = this->Gpu->Buffers.Allocate(Lifetime::Volume, this->Needs);
   if (status && !this->Needs.Cached)
   {
@@ -116,22 +118,13 @@ Status ProgressivePipeline::LoadVolume()
   {
     status = this->UploadVolume();
   }
-  if (status && !this->Needs.Cached)
-  {
-    this->DecodeWholeVolume();
-  }
-  if (status)
-  {
-    this->Gpu->Dispatch(
-      Stage::BlockRanges, this->Needs.Macrocells, this->Streams.GetSegments(Stage::BlockRanges));
-    status = this->GetStatus();
-  }
   this->VolumeLoaded = status.IsOk();
   return status;
 }
 
 Status ProgressivePipeline::UploadVolume()
 {
+  const Stopwatch stopwatch;
   this->Gpu->Uniforms.Upload(DescribeVolume(this->Size, this->Volume));
   this->Gpu->Buffers.Upload(Buffer::HiddenCells, this->Volume.Hidden);
   this->Streams.Free();
@@ -142,7 +135,27 @@ Status ProgressivePipeline::UploadVolume()
     status =
       this->Streams.Upload(this->Gpu->Gl, Buffer::ColorStream, this->Volume.Colors, this->Size);
   }
+  this->UploadMilliseconds = stopwatch.GetMilliseconds();
   return status;
+}
+
+// Where the whole volume is decoded the streams go again.
+const Status& ProgressivePipeline::PrepareVolume()
+{
+  if (this->VolumePrepared)
+  {
+    return this->GetStatus();
+  }
+  this->Gpu->Timer.BeginPreparation();
+  if (!this->Needs.Cached)
+  {
+    this->DecodeWholeVolume();
+  }
+  this->Gpu->Dispatch(
+    Stage::BlockRanges, this->Needs.Macrocells, this->Streams.GetSegments(Stage::BlockRanges));
+  this->Gpu->Timer.EndPreparation();
+  this->VolumePrepared = this->GetStatus().IsOk();
+  return this->GetStatus();
 }
 
 void ProgressivePipeline::DecodeWholeVolume()
@@ -165,6 +178,10 @@ Status ProgressivePipeline::DecodeVolume(std::vector<float>& values)
   if (Status loaded = this->LoadVolume(); !loaded)
   {
     return loaded;
+  }
+  if (!this->PrepareVolume())
+  {
+    return this->GetStatus();
   }
   values.resize(static_cast<std::size_t>(glsl::SAMPLES_PER_BLOCK * this->Needs.Slots));
   this->Gpu->Transfer.Read(this->Gpu->Buffers.GetName(Buffer::CacheValues), 0, values.data(),
@@ -222,9 +239,25 @@ void ProgressivePipeline::ResizeCache(std::int64_t slots)
 void ProgressivePipeline::UploadCacheBlock()
 {
   this->Cache.SpeculationLimit = static_cast<std::uint32_t>(this->Settings.SpeculationLimit);
-  // a software renderer has no lanes to keep busy, and its work groups cost much
-  this->Cache.PixelsPerStraggler = this->Gpu->Gl.GetLimits().Software ? 0 : PixelsPerStraggler;
+  this->Cache.PixelsPerStraggler = this->ChoosePixelsPerStraggler();
   this->Gpu->Uniforms.Upload(this->Cache);
+}
+
+std::uint32_t ProgressivePipeline::ChoosePixelsPerStraggler()
+{
+  // a software renderer has no lanes to keep busy, and its work groups cost much
+  const bool wanted = !this->Gpu->Gl.GetLimits().Software &&
+    InfoOf(Stage::CastStragglers).IsNeeded(Moment::Pass, this->Needs);
+  return wanted && this->Gpu->IsReady(Stage::CastStragglers) ? PixelsPerStraggler : 0;
+}
+
+// Has the next pass planned with the stages that are compiled by now.
+void ProgressivePipeline::UseReadyPrograms()
+{
+  if (this->Cache.PixelsPerStraggler != this->ChoosePixelsPerStraggler())
+  {
+    this->UploadCacheBlock();
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -324,12 +357,28 @@ void ProgressivePipeline::FreeForPlan(bool reload)
   }
   this->Gpu->Buffers.Trim(this->Needs);
   this->Gpu->SetNeeds(this->Needs);
+  this->Gpu->Request(Urgency::AtOnce); // they compile while the volume is uploaded
+  this->Gpu->Request(Urgency::Soon);
   this->UploadCacheBlock();
 }
 
 //------------------------------------------------------------------------------
 // The image
 //------------------------------------------------------------------------------
+bool ProgressivePipeline::AwaitPrograms(double milliseconds)
+{
+  const Stopwatch stopwatch;
+  while (!this->Gpu->IsReady(Urgency::AtOnce))
+  {
+    if (stopwatch.GetMilliseconds() >= milliseconds)
+    {
+      return false;
+    }
+    std::this_thread::sleep_for(PollingInterval);
+  }
+  return true;
+}
+
 void ProgressivePipeline::Start()
 {
   this->Gpu->Snapshots.Clear();
@@ -363,6 +412,7 @@ void ProgressivePipeline::ClearImage()
 // volume is decoded, one pass casts all rays to their ends.
 void ProgressivePipeline::RunPass()
 {
+  this->UseReadyPrograms();
   this->RunStage(Stage::CacheAges);
   this->RunStage(Stage::CacheEvict);
   this->RunStage(Stage::CastRays);
@@ -382,7 +432,7 @@ void ProgressivePipeline::RunPass()
 void ProgressivePipeline::RunStage(Stage stage)
 {
   const StageInfo& info = InfoOf(stage);
-  if (!info.IsNeeded(Moment::Pass, this->Needs))
+  if (!info.IsNeeded(Moment::Pass, this->Needs) || this->MayLeaveOut(stage))
   {
     return;
   }
@@ -394,6 +444,23 @@ void ProgressivePipeline::RunStage(Stage stage)
   {
     this->Gpu->DispatchIndirect(
       stage, static_cast<std::size_t>(info.GroupsInPass), this->Streams.GetSegments(stage));
+  }
+}
+
+// Is a stage still being compiled that the passes can do without? The last rays are cast as all
+// others are. Nothing has to be evicted until a pass was refused blocks.
+bool ProgressivePipeline::MayLeaveOut(Stage stage)
+{
+  switch (stage)
+  {
+    case Stage::CastStragglers:
+      return this->Cache.PixelsPerStraggler == 0;
+    case Stage::CacheAges:
+    case Stage::CacheEvict:
+      return !this->Log.WasRefusedBlocks() &&
+        !(this->Gpu->IsReady(Stage::CacheAges) && this->Gpu->IsReady(Stage::CacheEvict));
+    default:
+      return false;
   }
 }
 
@@ -415,6 +482,7 @@ void ProgressivePipeline::RunPasses(int maximum, bool eager, const std::function
     if (this->Needs.IsSinglePass())
     {
       this->Log.AssumeComplete();
+      this->Gpu->Request(Urgency::OnDemand);
       return;
     }
     this->AwaitPass();
@@ -458,6 +526,7 @@ void ProgressivePipeline::EndImage()
 {
   this->Gpu->Snapshots.Clear(); // those of passes that were not needed
   this->Log.EndImage();
+  this->Gpu->Request(Urgency::OnDemand); // there is time now
   if (!this->Log.GetPasses().empty())
   {
     this->Policy.RecordImage(this->Log.GetPasses().back().TouchedSlots);

@@ -52,7 +52,14 @@ public:
   /// error where the budget or the GPU has no room. `newImage`: the last image is not to go on.
   Status SetScene(const PipelineScene& scene, const PipelineSettings& settings, bool newImage);
 
-  /// Starts an image.
+  /// Waits until the programs that any picture needs are compiled, but no longer than so many
+  /// milliseconds. Returns false if they are not. Where the driver compiles nothing in the
+  /// background it does not wait: stages compile when they first run.
+  bool AwaitPrograms(double milliseconds);
+  /// Prepares the volume once it is loaded: decodes it if it is to be decoded whole, and finds the
+  /// values' range in each block. Waits for the programs.
+  const Status& PrepareVolume();
+  /// Starts an image of the prepared volume.
   void Start();
   /// Is an image under way, or complete, that the scene lets go on?
   bool IsStarted() const { return this->Started; }
@@ -93,6 +100,12 @@ public:
   const MemoryPlan& GetMemoryPlan() const { return this->Plan; }
   ///@}
 
+  ///@{ What was done before the first image of a volume, in milliseconds.
+  double GetUploadMilliseconds() const { return this->UploadMilliseconds; }
+  double GetPreparationMilliseconds() { return this->Gpu->Timer.GetPreparationMilliseconds(); }
+  std::vector<ProgramTime> GetProgramTimes() const { return this->Gpu->GetProgramTimes(); }
+  ///@}
+
 private:
   void ApplySettings(const PipelineSettings& settings);
   void DropDecodedBlocks();
@@ -105,9 +118,12 @@ private:
   Status MakeCache(bool newImage);
   void ResizeCache(std::int64_t slots);
   void UploadCacheBlock();
+  std::uint32_t ChoosePixelsPerStraggler();
+  void UseReadyPrograms();
   void ClearImage();
   void RunPass();
   void RunStage(Stage stage);
+  bool MayLeaveOut(Stage stage);
   void AwaitPass();
   void EndImage();
 
@@ -123,6 +139,8 @@ private:
   CachePolicy Policy;
   PassLog Log;
   bool VolumeLoaded = false;
+  bool VolumePrepared = false;
+  double UploadMilliseconds = 0.0;
   bool CacheToEmpty = false;
   bool Started = false;
   std::int64_t PassesBeforeCache = 0; ///< submitted before the cache was last made

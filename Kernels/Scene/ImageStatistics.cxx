@@ -45,6 +45,17 @@ void CollectStages(const std::map<Stage, double>& milliseconds, ImageStatistics&
     }
   }
 }
+
+void CollectLoading(ProgressivePipeline& pipeline, ImageStatistics& statistics)
+{
+  statistics.UploadMilliseconds = pipeline.GetUploadMilliseconds();
+  statistics.PreparationMilliseconds = pipeline.GetPreparationMilliseconds();
+  for (const ProgramTime& time : pipeline.GetProgramTimes())
+  {
+    statistics.Programs.push_back(
+      { InfoOf(time.Id).Name, time.Milliseconds, time.WaitedMilliseconds });
+  }
+}
 }
 
 ImageStatistics CollectStatistics(
@@ -53,6 +64,7 @@ ImageStatistics CollectStatistics(
   ImageStatistics statistics;
   CollectPasses(pipeline, pixels, distinctBlocksCounted, statistics);
   CollectStages(pipeline.GetStages(), statistics);
+  CollectLoading(pipeline, statistics);
   statistics.Buffers = pipeline.GetMemoryUse();
   statistics.StreamBytes = pipeline.GetStreamBytes();
   statistics.MemoryBudget = pipeline.GetMemoryPlan().Budget;

@@ -46,10 +46,22 @@ constexpr PassColumn PassColumns[] = {
   { "elapsed_ms", &PassStatistics::ElapsedMilliseconds },
 };
 
+/// A stage's program: until it was compiled, and for how long Render() could do nothing else.
+struct ProgramStatistics
+{
+  std::string Stage;
+  double Milliseconds;
+  double WaitedMilliseconds;
+};
+
 struct ImageStatistics
 {
   std::vector<PassStatistics> Passes;
-  double TotalMilliseconds = 0.0;                            ///< spent in Render() on this image
+  double TotalMilliseconds = 0.0; ///< spent in Render() on this image
+  double InputMilliseconds = 0.0; ///< reading and compressing
+  double UploadMilliseconds = 0.0;
+  double PreparationMilliseconds = 0.0;
+  std::vector<ProgramStatistics> Programs;
   std::vector<std::pair<std::string, std::int64_t>> Buffers; ///< names and bytes
   std::int64_t StreamBytes = 0;                              ///< of the compressed streams
   std::int64_t MemoryBudget = 0;

@@ -44,73 +44,123 @@ void WriteVersion(std::ostream& out, bool compute, bool byExtensions)
   }
 }
 
-void WriteGroupSizes(std::ostream& out, const StageInfo& stage)
+// What a shader may use of the tables and the scene: names, and the lines that define them.
+class Definitions
+{
+public:
+  void Add(const std::string& name, const std::string& value = "")
+  {
+    this->Lines.emplace_back(name, "#define " + name + (value.empty() ? "" : " " + value) + "\n");
+  }
+
+  /// Writes those that a text mentions: scenes that differ in others only share a program.
+  void Write(std::ostream& out, const std::string& text) const
+  {
+    std::set<std::string> words;
+    std::string word;
+    for (const char c : text + " ")
+    {
+      if (std::isalnum(static_cast<unsigned char>(c)) || c == '_')
+      {
+        word += c;
+      }
+      else if (!word.empty())
+      {
+        words.insert(word);
+        word.clear();
+      }
+    }
+    for (const auto& line : this->Lines)
+    {
+      out << (words.count(line.first) ? line.second : "");
+    }
+  }
+
+private:
+  std::vector<std::pair<std::string, std::string>> Lines;
+};
+
+void DefineGroupSizes(Definitions& definitions, const StageInfo& stage)
 {
   for (const StageInfo& info : PipelineStages())
   {
     if (!info.Draws())
     {
-      out << "#define " << MacroName(info.Name) << "_GROUP_SIZE " << info.GroupSize << "u\n";
+      definitions.Add(MacroName(info.Name) + "_GROUP_SIZE", std::to_string(info.GroupSize) + "u");
     }
   }
   if (!stage.Draws())
   {
-    out << "#define COMPUTE\n"
-        << "#define GROUP_SIZE " << stage.GroupSize << "u\n"
-        << "layout(local_size_x = " << stage.GroupSize << ") in;\n";
+    definitions.Add("COMPUTE");
+    definitions.Add("GROUP_SIZE", std::to_string(stage.GroupSize) + "u");
   }
 }
 
 // No two buffers of a stage overlap, so that all are `restrict`.
-void WriteBuffers(std::ostream& out, const StageInfo& stage, const std::vector<Buffer>& bound)
+void DefineBuffers(Definitions& definitions, const StageInfo& stage, const SceneNeeds& needs)
 {
   int binding = 0;
-  for (const Buffer buffer : bound)
+  for (const Buffer buffer : stage.BuffersOf(needs))
   {
     const std::string macro = PipelineBuffers()[static_cast<std::size_t>(buffer)].Macro;
     const Access access = stage.AccessTo(buffer);
-    out << "#define BUFFER_" << macro << " layout(std430, binding = " << binding++ << ") restrict "
-        << (Writes(access) ? "" : "readonly ") << (Reads(access) ? "" : "writeonly ") << "buffer\n"
-        << (Writes(access) ? "#define WRITES_" + macro + "\n" : "");
+    definitions.Add("BUFFER_" + macro,
+      "layout(std430, binding = " + std::to_string(binding++) + ") restrict " +
+        (Writes(access) ? "" : "readonly ") + (Reads(access) ? "" : "writeonly ") + "buffer");
+    if (Writes(access))
+    {
+      definitions.Add("WRITES_" + macro);
+    }
   }
 }
 
-void WriteFeatures(std::ostream& out, const SceneNeeds& needs)
+void DefineFeatures(Definitions& definitions, const SceneNeeds& needs)
 {
   for (const BufferInfo& info : PipelineBuffers())
   {
-    out << (info.IsNeeded(needs) ? std::string("#define HAS_") + info.Macro + "\n" : "");
+    if (info.IsNeeded(needs))
+    {
+      definitions.Add(std::string("HAS_") + info.Macro);
+    }
   }
   const std::pair<bool, const char*> features[] = { { needs.Lit, "LIT" },
     { needs.SeveralIsovalues, "SEVERAL_ISOVALUES" }, { needs.Translucent, "TRANSLUCENT" },
     { needs.Obstructed, "OBSTRUCTED" }, { needs.Clipped, "CLIPPED" }, { needs.Cropped, "CROPPED" },
-    { needs.Colored, "COLORED" } };
+    { needs.Colored, "COLORED" },
+    // not every crossing of a ray with a surface is its hit
+    { needs.Translucent || needs.Cropped, "MANY_CROSSINGS" },
+    // hits are queued to be lit, coloured or blended
+    { !needs.IsSinglePass() && Conditions::FinishedHits.Holds(needs), "HAS_PENDING_HITS" } };
   for (const auto& feature : features)
   {
-    out << (feature.first ? std::string("#define ") + feature.second + "\n" : "");
+    if (feature.first)
+    {
+      definitions.Add(feature.second);
+    }
   }
+  definitions.Add("RAYS_CONTINUE", needs.Translucent ? "true" : "false"); // behind a hit
 }
 
-void WriteHitSections(std::ostream& out, const SceneNeeds& needs)
+void DefineHitSections(Definitions& definitions, const SceneNeeds& needs)
 {
   const HitSections sections(needs);
-  out << "#define KEY_SECTION " << sections.Key << "u\n"
-      << "#define DEPTH_SECTION " << sections.Depth << "u\n"
-      << "#define ISOVALUE_SECTION " << sections.Isovalue << "u\n"
-      << "#define COLOR_SECTION " << sections.Color << "u\n"
-      << "#define OBSTACLE_SECTION " << sections.Obstacle << "u\n";
+  const std::pair<const char*, int> numbers[] = { { "KEY_SECTION", sections.Key },
+    { "DEPTH_SECTION", sections.Depth }, { "ISOVALUE_SECTION", sections.Isovalue },
+    { "COLOR_SECTION", sections.Color }, { "OBSTACLE_SECTION", sections.Obstacle } };
+  for (const auto& number : numbers)
+  {
+    definitions.Add(number.first, std::to_string(number.second) + "u");
+  }
 }
 
 // Adds files to a shader's text, each once, and keeps where each line comes from.
 class Paster
 {
 public:
-  Paster(const std::string& header, const ShaderFiles& files, std::string blockAccess)
+  Paster(const ShaderFiles& files, std::string blockAccess)
     : Files(files)
     , BlockAccess(std::move(blockAccess))
-    , NextLine(1 + static_cast<int>(std::count(header.begin(), header.end(), '\n')))
   {
-    this->Shader = { header, { { 1, "(generated)", 1 } } };
   }
 
   void Paste(const std::string& file)
@@ -138,7 +188,20 @@ public:
     }
   }
 
-  const AssembledShader& GetShader() const { return this->Shader; }
+  const std::string& GetText() const { return this->Shader.Text; }
+
+  /// The shader, after a generated header.
+  AssembledShader WithHeader(const std::string& header) const
+  {
+    const int lines = static_cast<int>(std::count(header.begin(), header.end(), '\n'));
+    AssembledShader shader = { header + this->Shader.Text, { { 1, "(generated)", 1 } } };
+    for (const ShaderSection& section : this->Shader.Sections)
+    {
+      shader.Sections.push_back(
+        { section.FirstLine + lines, section.File, section.FirstLineInFile });
+    }
+    return shader;
+  }
 
 private:
   // Empty if the line includes no GLSL file.
@@ -158,7 +221,7 @@ private:
   std::string BlockAccess;
   std::set<std::string> Pasted;
   AssembledShader Shader;
-  int NextLine;
+  int NextLine = 1;
 };
 
 // "File:line" of a line of the shader's text.
@@ -182,19 +245,23 @@ const std::vector<std::string>& RequiredExtensions()
 }
 
 AssembledShader AssembleShader(const StageInfo& stage, const std::string& file,
-  const std::vector<Buffer>& bound, const SceneNeeds& needs, bool byExtensions,
-  const ShaderFiles& files)
+  const SceneNeeds& needs, bool byExtensions, const ShaderFiles& files)
 {
-  std::ostringstream out;
-  WriteVersion(out, !stage.Draws(), byExtensions);
-  WriteGroupSizes(out, stage);
-  WriteBuffers(out, stage, bound);
-  WriteFeatures(out, needs);
-  WriteHitSections(out, needs);
-  Paster paster(
-    out.str(), files, needs.Cached ? "Cache/CachedBlocks.glsl" : "Cache/DecodedVolume.glsl");
+  Definitions definitions;
+  DefineGroupSizes(definitions, stage);
+  DefineBuffers(definitions, stage, needs);
+  DefineFeatures(definitions, needs);
+  DefineHitSections(definitions, needs);
+  Paster paster(files, needs.Cached ? "Cache/CachedBlocks.glsl" : "Cache/DecodedVolume.glsl");
   paster.Paste(file);
-  return paster.GetShader();
+  std::ostringstream header;
+  WriteVersion(header, !stage.Draws(), byExtensions);
+  definitions.Write(header, paster.GetText());
+  if (!stage.Draws())
+  {
+    header << "layout(local_size_x = " << stage.GroupSize << ") in;\n";
+  }
+  return paster.WithHeader(header.str());
 }
 
 std::string NameFiles(const std::string& log, const AssembledShader& shader)

@@ -39,16 +39,18 @@ constexpr const char* ViewportShader = "Output/Viewport.vert";
 
 /// Assembles a file of a stage from
 /// - the version: 4.30, or 1.50 with the required extensions,
-/// - the size of its work group, and GROUP_SIZE; of every other stage <STAGE>_GROUP_SIZE,
-/// - for each of its buffers that are `bound` BUFFER_<X>, the declaration up to its block's name
-///   with its qualifiers, and WRITES_<X> if the stage may,
-/// - HAS_<X> for each buffer that the scene needs, and a macro for each of its other features,
-/// - <X>_SECTION for each section of the buffer of hits, see HitSections.h,
+/// - those of the following macros that it mentions, so that scenes which differ in others only
+///   have the same shader:
+///   - GROUP_SIZE, and of every stage <STAGE>_GROUP_SIZE,
+///   - for each buffer that is bound BUFFER_<X>, the declaration up to its block's name with its
+///     qualifiers, and WRITES_<X> if the stage may,
+///   - HAS_<X> for each buffer that the scene needs, and a macro for each of its other features,
+///   - <X>_SECTION for each section of the buffer of hits, see HitSections.h,
+/// - the size of its work group,
 /// - the file itself. `#include "X"` pastes X once; `#include BLOCK_ACCESS` the file that knows
 ///   how this scene's decoded blocks are found.
 AssembledShader AssembleShader(const StageInfo& stage, const std::string& file,
-  const std::vector<Buffer>& bound, const SceneNeeds& needs, bool byExtensions,
-  const ShaderFiles& files = ShaderSources());
+  const SceneNeeds& needs, bool byExtensions, const ShaderFiles& files = ShaderSources());
 
 /// Replaces the places in a shader's text that begin the lines of a compiler's log by file and
 /// line. Understands "0:14(5): …" (Mesa) and "0(14) : …" (NVIDIA). No #line directives are needed

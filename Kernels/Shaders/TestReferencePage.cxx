@@ -39,9 +39,12 @@ what passes between CPU and GPU (`staging`): under 40 KB.
 ## Stages
 
 A pass runs those that are needed in every pass, in the order of `ProgressivePipeline::RunPass`.
+Where the driver compiles in the background it is given the programs of a scene in the order of the
+column *compiled*: there is no picture without those compiled first; passes do without those
+compiled second until they are there; the last are compiled when the image is complete.
 
-| stage | file | work group | runs | reads | writes |
-|---|---|---|---|---|---|
+| stage | file | work group | compiled | runs | reads | writes |
+|---|---|---|---|---|---|---|
 )";
 
 std::string Joined(const std::vector<std::string>& items)
@@ -72,6 +75,13 @@ std::string Users(const BufferInfo& buffer, bool (*uses)(Access))
   return Joined(users);
 }
 
+// Nothing if the condition always holds.
+std::string InBrackets(const Condition& condition)
+{
+  const std::string words = condition.Words;
+  return words == Conditions::Always.Words ? "" : " (" + words + ")";
+}
+
 std::string BuffersOf(const StageInfo& stage, bool (*uses)(Access))
 {
   std::vector<std::string> names;
@@ -79,8 +89,8 @@ std::string BuffersOf(const StageInfo& stage, bool (*uses)(Access))
   {
     if (uses(use.How))
     {
-      names.push_back(
-        std::string("`") + PipelineBuffers()[static_cast<std::size_t>(use.Id)].Name + "`");
+      names.push_back(std::string("`") + PipelineBuffers()[static_cast<std::size_t>(use.Id)].Name +
+        "`" + InBrackets(use.Needed));
     }
   }
   return Joined(names);
@@ -92,9 +102,7 @@ std::string RunsOf(const StageInfo& stage)
   std::vector<std::string> runs;
   for (const StageRun& run : stage.Runs)
   {
-    const std::string needed = run.Needed.Words;
-    runs.push_back(moments[static_cast<int>(run.When)] +
-      (needed == Conditions::Always.Words ? "" : " (" + needed + ")"));
+    runs.push_back(moments[static_cast<int>(run.When)] + InBrackets(run.Needed));
   }
   return Joined(runs);
 }
@@ -109,12 +117,13 @@ std::string ReferencePage()
         << Users(info, Writes) << " | " << Users(info, Reads) << " | " << info.Purpose << " |\n";
   }
   out << BetweenTables;
+  const char* urgencies[] = { "first", "second", "last" };
   for (const StageInfo& stage : PipelineStages())
   {
     out << "| " << stage.Name << " | [" << stage.File << "](../../Kernels/Shaders/" << stage.File
         << ") | " << (stage.Draws() ? "" : std::to_string(stage.GroupSize)) << " | "
-        << RunsOf(stage) << " | " << BuffersOf(stage, Reads) << " | " << BuffersOf(stage, Writes)
-        << " |\n";
+        << urgencies[static_cast<int>(stage.Compiled)] << " | " << RunsOf(stage) << " | "
+        << BuffersOf(stage, Reads) << " | " << BuffersOf(stage, Writes) << " |\n";
   }
   return out.str();
 }

@@ -54,29 +54,6 @@ std::vector<SceneNeeds> Scenes()
   return scenes;
 }
 
-bool IsNeeded(const StageInfo& stage, const SceneNeeds& needs)
-{
-  return std::any_of(stage.Runs.begin(), stage.Runs.end(),
-    [&](const StageRun& run) { return run.Needed.Holds(needs); });
-}
-
-// What a stage finds there when it runs: ranges come from the stream before there is a cache, or
-// from the decoded volume when the stream is gone.
-std::vector<Buffer> BoundBuffers(const StageInfo& stage, const SceneNeeds& needs)
-{
-  const Buffer absent = needs.Cached ? Buffer::CacheValues : Buffer::Stream;
-  std::vector<Buffer> bound;
-  for (const BufferUse& use : stage.Buffers)
-  {
-    const bool there = stage.Id != Stage::BlockRanges || use.Id != absent;
-    if (there && PipelineBuffers()[static_cast<std::size_t>(use.Id)].IsNeeded(needs))
-    {
-      bound.push_back(use.Id);
-    }
-  }
-  return bound;
-}
-
 // Not every compiler tells if an atomic function changes what is only to be read: plain reads and
 // writes stand in.
 std::string WithoutAtomics(std::string text)
@@ -94,7 +71,7 @@ std::string WithoutAtomics(std::string text)
 AssembledShader Assemble(
   const StageInfo& stage, const SceneNeeds& needs, const ShaderFiles& files = ShaderSources())
 {
-  return AssembleShader(stage, stage.File, BoundBuffers(stage, needs), needs, false, files);
+  return AssembleShader(stage, stage.File, needs, false, files);
 }
 
 // The compiler's log; empty if the shader compiles.
@@ -130,7 +107,7 @@ bool NeedsMoreThan(const StageInfo& stage, Buffer buffer, const char* qualifier)
     {
       AssembledShader source = Assemble(stage, needs);
       source.Text = WithAccess(WithoutAtomics(source.Text), buffer, qualifier);
-      return IsNeeded(stage, needs) && !Compile(stage, source).empty();
+      return stage.IsNeeded(needs) && !Compile(stage, source).empty();
     });
 }
 
@@ -156,8 +133,7 @@ bool CompilesAlone(const StageInfo& stage, const std::string& file)
       const std::vector<ShaderSection> sections = Assemble(stage, needs).Sections;
       const bool included = std::any_of(sections.begin(), sections.end(),
         [&file](const ShaderSection& section) { return section.File == file; });
-      AssembledShader shader =
-        AssembleShader(stage, file, BoundBuffers(stage, needs), needs, false);
+      AssembledShader shader = AssembleShader(stage, file, needs, false);
       shader.Text.insert(shader.Text.find('\n') + 1, DefinitionsOf(stage));
       return included && Compile(stage, shader).empty();
     });
@@ -194,9 +170,64 @@ TEST(StageTable, BindsNoMoreBuffersThanGuaranteed)
   {
     for (const SceneNeeds& needs : Scenes())
     {
-      EXPECT_LE(BoundBuffers(stage, needs).size(), GuaranteedBuffers) << stage.Name;
+      EXPECT_LE(stage.BuffersOf(needs).size(), GuaranteedBuffers) << stage.Name;
     }
   }
+}
+
+TEST(StageTable, EveryProgramIsAskedForOnce)
+{
+  for (const SceneNeeds& needs : Scenes())
+  {
+    std::vector<Stage> asked;
+    for (const Urgency urgency : { Urgency::AtOnce, Urgency::Soon, Urgency::OnDemand })
+    {
+      const std::vector<Stage> stages = ProgramsOf(urgency, needs);
+      asked.insert(asked.end(), stages.begin(), stages.end());
+    }
+    std::sort(asked.begin(), asked.end());
+    std::vector<Stage> needed;
+    for (const StageInfo& stage : PipelineStages())
+    {
+      if (stage.IsNeeded(needs))
+      {
+        needed.push_back(stage.Id);
+      }
+    }
+    EXPECT_EQ(asked, needed);
+  }
+}
+
+// Ranges come from the stream where there is a cache, else from the decoded volume.
+TEST(StageTable, RangesComeFromOnePlace)
+{
+  const StageInfo& ranges = InfoOf(Stage::BlockRanges);
+  EXPECT_EQ(ranges.BuffersOf(SmallScene(true)),
+    (std::vector<Buffer>{ Buffer::Macrocells, Buffer::Stream }));
+  EXPECT_EQ(ranges.BuffersOf(SmallScene(false)),
+    (std::vector<Buffer>{ Buffer::Macrocells, Buffer::CacheValues }));
+}
+
+// Clicks that change how a scene looks do not compile the decoder again.
+TEST(ShaderAssembler, DefinesWhatAShaderMentions)
+{
+  SceneNeeds other = SmallScene(true);
+  other.Lit = other.Clipped = other.Cropped = other.SeveralIsovalues = true;
+  for (const StageInfo& stage : PipelineStages())
+  {
+    const bool sees = stage.Id == Stage::CastRays || stage.Id == Stage::CastStragglers ||
+      stage.Id == Stage::Composite || stage.Id == Stage::Select || stage.Id == Stage::FinishHits ||
+      stage.Id == Stage::RequestBlocks || stage.Id == Stage::PlanPass;
+    EXPECT_TRUE(sees || Assemble(stage, other).Text == Assemble(stage, SmallScene(true)).Text)
+      << stage.Name;
+  }
+  const auto defines = [&other](Stage stage, const std::string& name)
+  {
+    const std::string text = Assemble(InfoOf(stage), other).Text;
+    return text.find("#define " + name + "\n") != std::string::npos;
+  };
+  EXPECT_TRUE(defines(Stage::CastRays, "CLIPPED"));
+  EXPECT_FALSE(defines(Stage::DecodeBlocks, "CLIPPED"));
 }
 
 TEST_F(Shaders, CompileWithTheAccessOfTheTable)
@@ -205,7 +236,7 @@ TEST_F(Shaders, CompileWithTheAccessOfTheTable)
   {
     for (const SceneNeeds& needs : Scenes())
     {
-      if (IsNeeded(stage, needs))
+      if (stage.IsNeeded(needs))
       {
         AssembledShader source = Assemble(stage, needs);
         EXPECT_EQ(Compile(stage, source), "") << stage.Name;
@@ -223,10 +254,9 @@ TEST_F(Shaders, CompileWithExtensions)
   {
     for (const SceneNeeds& needs : Scenes())
     {
-      if (IsNeeded(stage, needs))
+      if (stage.IsNeeded(needs))
       {
-        const AssembledShader source =
-          AssembleShader(stage, stage.File, BoundBuffers(stage, needs), needs, true);
+        const AssembledShader source = AssembleShader(stage, stage.File, needs, true);
         EXPECT_EQ(Compile(stage, source), "") << stage.Name;
       }
     }

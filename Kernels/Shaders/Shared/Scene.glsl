@@ -6,19 +6,6 @@
 #define INSTANCE(name) name
 #include "Shared/SceneBlocks.glsl.h"
 
-// What follows from what the scene needs.
-#if defined(TRANSLUCENT) || defined(CROPPED)
-#define MANY_CROSSINGS // not every crossing of a ray with a surface is its hit
-#endif
-#if defined(HAS_RAYS) && (defined(LIT) || defined(TRANSLUCENT) || defined(COLORED))
-#define HAS_PENDING_HITS // hits are queued to be lit, coloured or blended
-#endif
-#ifdef TRANSLUCENT
-#define RAYS_CONTINUE true // behind a hit
-#else
-#define RAYS_CONTINUE false
-#endif
-
 // Work groups of this size that it takes to give each item an invocation.
 uint GroupsOf(uint items, uint size)
 {
