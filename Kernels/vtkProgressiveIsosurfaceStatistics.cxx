@@ -127,6 +127,44 @@ vtkTypeInt64 vtkProgressiveIsosurfaceStatistics::GetLeastMemoryBudget()
   return this->Image->LeastMemoryBudget;
 }
 
+double vtkProgressiveIsosurfaceStatistics::GetInputMilliseconds()
+{
+  return this->Image->InputMilliseconds;
+}
+
+double vtkProgressiveIsosurfaceStatistics::GetUploadMilliseconds()
+{
+  return this->Image->UploadMilliseconds;
+}
+
+double vtkProgressiveIsosurfaceStatistics::GetPreparationMilliseconds()
+{
+  return this->Image->PreparationMilliseconds;
+}
+
+int vtkProgressiveIsosurfaceStatistics::GetNumberOfPrograms()
+{
+  return static_cast<int>(this->Image->Programs.size());
+}
+
+const char* vtkProgressiveIsosurfaceStatistics::GetProgram(int i)
+{
+  const std::vector<ProgramStatistics>& programs = this->Image->Programs;
+  return HasIndex(programs, i) ? programs[i].Stage.c_str() : nullptr;
+}
+
+double vtkProgressiveIsosurfaceStatistics::GetProgramMilliseconds(int i)
+{
+  const std::vector<ProgramStatistics>& programs = this->Image->Programs;
+  return HasIndex(programs, i) ? programs[i].Milliseconds : 0.0;
+}
+
+double vtkProgressiveIsosurfaceStatistics::GetProgramWaitMilliseconds(int i)
+{
+  const std::vector<ProgramStatistics>& programs = this->Image->Programs;
+  return HasIndex(programs, i) ? programs[i].WaitedMilliseconds : 0.0;
+}
+
 int vtkProgressiveIsosurfaceStatistics::GetNumberOfStages()
 {
   return static_cast<int>(this->Image->Stages.size());

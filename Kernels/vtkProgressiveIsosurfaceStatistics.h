@@ -62,6 +62,30 @@ public:
 
   ///@{
   /**
+   * How the time before the first image of a volume splits, in milliseconds: reading (or computing)
+   * and compressing the inputs, as far as Render() does it; their upload; and on the GPU, finding
+   * the range of values of each block, with decoding if the whole volume is decoded.
+   */
+  double GetInputMilliseconds();
+  double GetUploadMilliseconds();
+  double GetPreparationMilliseconds();
+  ///@}
+
+  ///@{
+  /**
+   * The compiled programs of this image's stages, by the names of their GLSL files: milliseconds
+   * from when a program was asked for until it was found complete, and for how many of these
+   * Render() could do nothing but wait. Where the driver compiles in threads the first overlap.
+   * Mappers in a window share programs: the time is that of the one who asked first.
+   */
+  int GetNumberOfPrograms();
+  const char* GetProgram(int i);
+  double GetProgramMilliseconds(int i);
+  double GetProgramWaitMilliseconds(int i);
+  ///@}
+
+  ///@{
+  /**
    * Bytes of GPU memory that the mapper holds: in total, for the compressed streams, and by named
    * buffer. The names of the block cache's buffers begin with "cache_".
    */

@@ -48,6 +48,12 @@ def statistics(
             ``DetailedStatistics`` are on.
         ``total_ms``
             Milliseconds over all passes.
+        ``loading``
+            How the time before the volume's first image splits, in milliseconds: ``input_ms``
+            (reading and compressing, as far as the mapper does it), ``upload_ms``,
+            ``preparation_ms`` (on the GPU: ranges of values, and decoding of a volume that is
+            decoded whole), and ``programs`` {stage: {``ms``, ``waited_ms``}}: from when a stage's
+            program was asked for until it was compiled, and the wait for it.
         ``memory``
             GPU memory in bytes: ``buffers`` {name: bytes}, their ``total``, the part of it that is
             the ``compressed`` stream, the ``budget`` for the rest, and the ``least_budget`` that
@@ -77,6 +83,7 @@ def statistics(
     values = {
         "passes": [_pass_values(source, i) for i in range(source.GetNumberOfPasses())],
         "total_ms": source.GetTotalMilliseconds(),
+        "loading": _loading(source),
         "memory": {
             "buffers": {source.GetBufferName(i): source.GetBufferBytes(i) for i in names},
             "total": source.GetTotalBytes(),
@@ -94,6 +101,21 @@ def statistics(
         values["camera"] = Camera.from_vtk(renderer.GetActiveCamera()).to_dict()
         values["size"] = list(renderer.GetSize())
     return values
+
+
+def _loading(source: vtkProgressiveIsosurfaceStatistics) -> dict[str, Any]:
+    return {
+        "input_ms": source.GetInputMilliseconds(),
+        "upload_ms": source.GetUploadMilliseconds(),
+        "preparation_ms": source.GetPreparationMilliseconds(),
+        "programs": {
+            source.GetProgram(i): {
+                "ms": source.GetProgramMilliseconds(i),
+                "waited_ms": source.GetProgramWaitMilliseconds(i),
+            }
+            for i in range(source.GetNumberOfPrograms())
+        },
+    }
 
 
 def _pass_values(source: vtkProgressiveIsosurfaceStatistics, i: int) -> dict[str, Any]:

@@ -29,6 +29,7 @@ def test_keys(scene):
         *(
             "passes",
             "total_ms",
+            "loading",
             "memory",
             "stages",
             "left_out",
@@ -105,6 +106,16 @@ def test_details_are_there_when_asked_for(scene):
     assert all(p["visible_blocks"] is None and p["active_blocks"] is None for p in about["passes"])
     assert [p["pairs"] for p in about["passes"]] == [p["pairs"] for p in statistics["passes"]]
     assert set(statistics["memory"]["buffers"]) - set(about["memory"]["buffers"]) == {"cache_seen"}
+
+
+def test_loading_splits(scene):
+    """Each stage that ran has a program, which somebody waited for: there are no threads."""
+    loading = scene.statistics()["loading"]
+    assert set(loading) == {"input_ms", "upload_ms", "preparation_ms", "programs"}
+    assert all(loading[key] > 0 for key in ("input_ms", "upload_ms", "preparation_ms"))
+    assert set(loading["programs"]) >= set(scene.statistics()["stages"])
+    for times in loading["programs"].values():
+        assert 0 < times["waited_ms"] and 0 < times["ms"] <= times["waited_ms"]
 
 
 def test_memory_adds_up(scene):
