@@ -7,7 +7,7 @@ import importlib.util
 import shlex
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -15,9 +15,15 @@ from typing import Any
 from ..measure.document import load_document, merge, new_document, save_document
 from ..measure.machine import OtherProcesses, describe_machine, use_all_cores
 from ..rendering import MAX_SIZE
+from .goals import HD
+from .processes import baseline_package
 from .report import PAGE, write_markdown
 from .sets import SETS, Defaults, steps
-from .settings import IMAGE_SIZES, PEERS, Settings
+from .settings import FLIGHT_SIZES, IMAGE_SIZES, PEERS, Settings
+
+#: How many frames a set renders by default, and of what.
+_FRAMES = {"soak": 10_000, "interactive": 60}
+_OF_WHAT = {"soak": "", "interactive": " of every movement"}
 
 
 def add_bench(
@@ -58,18 +64,39 @@ def _add_set(
     one = sets.add_parser(
         name, help=defaults.description, description=_sentence(defaults.description)
     )
-    _add_images(one, defaults, size_type)
+    _add_images(one, defaults)
+    if name == "interactive":
+        _add_sizes(one, size_type, FLIGHT_SIZES)
+        one.set_defaults(size=HD)
+    else:
+        one.add_argument(
+            "--size", metavar="WxH", type=size_type, default=HD, help="pixels (default: 1280x720)"
+        )
     if name == "scaling":
-        _add_scaling(one, size_type)
-    if name in ("quick", "paper", "peers"):
+        _add_sizes(one, size_type, IMAGE_SIZES)
+        one.add_argument(
+            "--largest", metavar="N", type=_at_least(64), help="largest side of a volume"
+        )
+    if name == "interactive":
+        one.add_argument(
+            "--largest-plain", metavar="N", type=_at_least(2),
+            help="largest side of the volumes that VTK's ways show (default: as memory allows)",
+        )  # fmt: skip
+    if name in ("interactive", "first-image"):
+        one.add_argument(
+            "--baseline", metavar="PATH", type=Path,
+            help="an earlier commit, which is measured beside this one: a folder that has its "
+            "built package in it, or an archive of one, as pack-bundle makes",
+        )  # fmt: skip
+    if name in ("quick", "paper", "peers", "interactive"):
         one.add_argument(
             "--largest-mesh", metavar="N", type=_at_least(2),
             help="largest side of the volumes that meshes are made of (default: as memory allows)",
         )  # fmt: skip
-    if name == "soak":
+    if name in _FRAMES:
         one.add_argument(
-            "--frames", metavar="N", type=_at_least(1), default=10_000,
-            help="how many are rendered (default: %(default)s)",
+            "--frames", metavar="N", type=_at_least(1), default=_FRAMES[name],
+            help=f"how many are rendered{_OF_WHAT[name]} (default: %(default)s)",
         )  # fmt: skip
     one.add_argument(
         "--no-plots",
@@ -80,9 +107,7 @@ def _add_set(
     one.set_defaults(run=_measure, set=name)
 
 
-def _add_images(
-    one: argparse.ArgumentParser, defaults: Defaults, size_type: Callable[[str], tuple[int, int]]
-) -> None:
+def _add_images(one: argparse.ArgumentParser, defaults: Defaults) -> None:
     """Add the options that say which images a set renders, and how often."""
     one.add_argument(
         "--fields", metavar="A,B", default=defaults.fields,
@@ -104,19 +129,19 @@ def _add_images(
     one.add_argument(
         "--repeat", metavar="N", type=_at_least(1), default=1, help="how often images are timed"
     )
-    one.add_argument(
-        "--size", metavar="WxH", type=size_type, default=(1280, 720),
-        help="pixels (default: 1280x720)",
-    )  # fmt: skip
 
 
-def _add_scaling(one: argparse.ArgumentParser, size_type: Callable[[str], tuple[int, int]]) -> None:
-    """Add the options of the scaling with image and volume size."""
-    one.add_argument("--largest", metavar="N", type=_at_least(64), help="largest side of a volume")
+def _add_sizes(
+    one: argparse.ArgumentParser,
+    size_type: Callable[[str], tuple[int, int]],
+    default: Sequence[tuple[int, int]],
+) -> None:
+    """Add the option of several sizes of images."""
+    listed = ",".join(f"{width}x{height}" for width, height in default)
     one.add_argument(
-        "--images", metavar="WxH,WxH", default=IMAGE_SIZES,
+        "--images", metavar="WxH,WxH", default=tuple(default),
         type=lambda text: tuple(size_type(part) for part in text.split(",")),
-        help="sizes of images (default: 640x360,1280x720,1920x1080,3840x2160)",
+        help=f"sizes of images (default: {listed})",
     )  # fmt: skip
 
 
@@ -146,6 +171,12 @@ def _isovalues(text: str) -> int | str:
 
 
 def _measure(parsed: argparse.Namespace) -> None:
+    """Run a set, with the package of the earlier commit where there is one."""
+    with baseline_package(getattr(parsed, "baseline", None)) as parsed.baseline:
+        _run_set(parsed)
+
+
+def _run_set(parsed: argparse.Namespace) -> None:
     """Run a set; results are saved after every measurement, so that an interrupted run counts."""
     given = {field.name: getattr(parsed, field.name, None) for field in fields(Settings)}
     settings = Settings(**{key: value for key, value in given.items() if value is not None})

@@ -37,6 +37,33 @@ QUIET = 0.05
 #: Samples from which on a volume counts as large.
 LARGE = 1024**3
 
+#: Largest ratio to commit 9de4cd9 of an image's median time on a GPU at 1280x720, by movement and
+#: field, and of its processor time without a GPU.
+AGAINST_BASELINE = {
+    "next view": {
+        "gyroid-256-": 0.65,
+        "gyroid-512-": 0.65,
+        "gyroid-1024-k24-r4": 0.5,
+        "gyroid-1024-k6-r2": 0.5,
+        "gyroid-2048x2048x1920-k6-": 0.5,
+    },
+    "moved by 2°": {"gyroid-256-": 0.65, "gyroid-512-": 0.65, "gyroid-1024-": 0.5},
+}
+CPU_AGAINST_BASELINE = 0.6
+
+#: Movements in which no frame may take long: so many times the median, and milliseconds.
+SMOOTH = ("orbit", "dolly in", "dolly out", "far view", "isovalue sweep")
+HITCH, HITCH_MS = 3.0, 33.0
+
+#: The movement in which VTK's mapper may be faster.
+_FAR = "far view"
+
+#: Milliseconds from opening a file to a picture in a process whose driver has compiled nothing, by
+#: the beginning of the field's name; from that limit to the complete image; and how many times the
+#: time of a process whose shaders are compiled the next images may take.
+FIRST_PICTURE_MS = {"gyroid-256-": 500.0, "gyroid-1024-": 1200.0}
+COMPLETE_AFTER_MS, NEXT_IMAGES = 500.0, 1.25
+
 #: Prefixes of the names of fields that must be faster than VTK's mapper without a GPU.
 FASTER_WITHOUT_GPU = ("ct-cranium-", "mri-brain-", "gyroid-256-k6-")
 
@@ -258,3 +285,114 @@ def error_against_mapper(
     goal = f"< {milliseconds(mapper['ms'])}, ≤ {number(mapper['mean'])} voxels (VTK's mapper)"
     what = "time at equal or smaller depth error"
     return Verdict(what, measured, goal, best is not None and best["ms"] < mapper["ms"])
+
+
+# ---- fly-throughs and first images
+
+
+def _ratios(ours: dict[str, Any], theirs: dict[str, Any], *keys: str) -> list[float]:
+    """Divide our times by theirs."""
+    return [ours[key] / theirs[key] for key in keys]
+
+
+def _by_prefix(limits: dict[str, float], field: str) -> float | None:
+    """Return the limit of the fields whose names begin so."""
+    return next((limit for prefix, limit in limits.items() if field.startswith(prefix)), None)
+
+
+def movement_against_mapper(
+    machine: dict[str, Any],
+    field: str,
+    movement: str,
+    ours: dict[str, Any],
+    theirs: dict[str, Any],
+) -> Verdict | None:
+    """Judge the frames of a movement by those of VTK's mapper.
+
+    Parameters
+    ----------
+    machine : dict
+    field, movement : str
+    ours, theirs : dict
+        The `timing.summary` of the frames.
+    """
+    kind, what = machine_kind(machine), f"{movement}, against VTK's mapper"
+    if kind == SOFTWARE and field.startswith(FASTER_WITHOUT_GPU) and movement == "next view":
+        keys, names = ["median"], "median"
+    elif kind == GPU and movement != _FAR:
+        keys, names = ["median", "p95", "max"], "median, 95 % and largest"
+    else:
+        return None
+    ratios = _ratios(ours, theirs, *keys)
+    measured = f"{' / '.join(map(number, ratios))} ×"
+    return Verdict(what, measured, f"< 1 × the mapper's {names}", max(ratios) < 1)
+
+
+def movement_against_baseline(
+    machine: dict[str, Any],
+    field: str,
+    size: Sequence[int],
+    movement: str,
+    ours: dict[str, Any],
+    theirs: dict[str, Any],
+) -> Verdict | None:
+    """Judge the frames of a movement by those of the earlier commit, in the same run.
+
+    Parameters
+    ----------
+    machine : dict
+    field : str
+    size : sequence of int
+    movement : str
+    ours, theirs : dict
+        ``time`` and ``cpu_ms`` of the frames, see `interactive`.
+    """
+    kind = machine_kind(machine)
+    if kind == SOFTWARE and field.startswith(FASTER_WITHOUT_GPU) and movement == "next view":
+        ratio, what, limit = ours["cpu_ms"] / theirs["cpu_ms"], "CPU time", CPU_AGAINST_BASELINE
+    elif kind == GPU and tuple(size) == HD:
+        (ratio,) = _ratios(ours["time"], theirs["time"], "median")
+        found = _by_prefix(AGAINST_BASELINE.get(movement, {}), field)
+        if found is None:
+            return None
+        what, limit = "median", found
+    else:
+        return None
+    goal = f"≤ {number(limit)} × the baseline's {what}"
+    return Verdict(f"{movement}, against the baseline", f"{number(ratio)} ×", goal, ratio <= limit)
+
+
+def no_hitch(machine: dict[str, Any], movement: str, ours: dict[str, Any]) -> Verdict | None:
+    """Judge the longest frame of a movement, of its `timing.summary`."""
+    if machine_kind(machine) != GPU or movement not in SMOOTH:
+        return None
+    limit = min(HITCH * ours["median"], HITCH_MS)
+    goal = f"≤ {number(HITCH)} × the median and {milliseconds(HITCH_MS)}"
+    return Verdict(
+        f"{movement}, longest frame", milliseconds(ours["max"]), goal, ours["max"] <= limit
+    )
+
+
+def first_picture(
+    machine: dict[str, Any], field: str, size: Sequence[int], row: dict[str, Any]
+) -> list[Verdict]:
+    """Judge the way to a first image where the driver has compiled nothing, see `first_image`."""
+    limit = _by_prefix(FIRST_PICTURE_MS, field)
+    if not _on_gpu(machine, size) or limit is None:
+        return []
+    whole, first, complete = limit + COMPLETE_AFTER_MS, row["first_ms"], row["complete_ms"]
+    return [
+        _at_most("first picture, median", first["median"], limit, milliseconds),
+        _at_most("complete image, median", complete["median"], whole, milliseconds),
+    ]
+
+
+def next_images(
+    machine: dict[str, Any], emptied: dict[str, Any], kept: dict[str, Any]
+) -> Verdict | None:
+    """Judge the images after the first one by those of a process whose shaders were compiled."""
+    if machine_kind(machine) != GPU:
+        return None
+    (ratio,) = _ratios(emptied["next"], kept["next"], "median")
+    goal = f"≤ {number(NEXT_IMAGES)} × those with compiled shaders"
+    return Verdict("next images, median", f"{number(ratio)} ×", goal, ratio <= NEXT_IMAGES)

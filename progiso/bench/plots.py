@@ -16,8 +16,13 @@ from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
+from ..measure.isosurface import Isosurface
+from ..measure.mesh import Mesh
 from ..measure.text import number, pixels
+from .driver import MOVEMENTS
 from .errors import DEFAULT_DISTANCE
+from .interactive import BASELINE
+from .volume_mapper import VolumeMapper
 
 # Okabe and Ito's colours, which colour-blind readers can tell apart; markers repeat them.
 _BLUE, _ORANGE, _GREEN, _RED, _PINK, _SKY, _YELLOW, _BLACK = (
@@ -365,6 +370,82 @@ def _draw_budget(records: list[dict[str, Any]]) -> dict[str, Figure]:
     return {"budget": figure}
 
 
+# ---- fly-throughs and first images
+
+_FLIGHT_COLORS = {
+    Isosurface.label: _BLUE,
+    BASELINE: _PINK,
+    VolumeMapper.label: _ORANGE,
+    Mesh.label: _GREEN,
+}
+
+
+def _draw_interactive(records: list[dict[str, Any]]) -> dict[str, Figure]:
+    return {_file("interactive", record): _frame_times(record) for record in records}
+
+
+def _frame_times(record: dict[str, Any]) -> Figure:
+    """Plot the time of every frame, a panel for each movement, a line for each process."""
+    figure, panels = _figure(13, 6.5, nrows=2, ncols=4, sharey=True)
+    rows = [row for row in record["rows"] if "failed" not in row]
+    for name, axes in zip(MOVEMENTS, panels.flat):
+        for row in rows:
+            frames = np.reshape(row["movements"][name]["ms"], (row["processes"], -1))
+            place = (np.arange(frames.shape[1]) + 0.5) / frames.shape[1]
+            for i, milliseconds in enumerate(frames):
+                label = row["peer"] if i == 0 else None
+                color = _FLIGHT_COLORS[row["peer"]]
+                axes.plot(place, milliseconds, color=color, lw=1, marker=".", ms=3, label=label)
+        axes.set_yscale("log")
+        axes.set_xlim(0, 1)
+        axes.set_xticks([])
+        axes.set_title(name, fontsize=10)
+    _log(panels[0, 0].yaxis)
+    for axes in panels[:, 0]:
+        axes.set_ylabel("ms of a frame")
+    panels[-1, -1].axis("off")
+    panels[-1, -1].legend(*panels[0, 0].get_legend_handles_labels(), loc="center")
+    figure.suptitle(_titled(record))
+    return figure
+
+
+def _draw_first_image(records: list[dict[str, Any]]) -> dict[str, Figure]:
+    return {_file("first-image", record): _way_to_the_image(record) for record in records}
+
+
+def _way_to_the_image(record: dict[str, Any]) -> Figure:
+    """Plot the times from opening the file on, and those of the images after."""
+    rows = record["rows"]
+    figure, (left, right) = _figure(
+        11, 1.4 + 0.6 * len(rows), ncols=2, gridspec_kw={"width_ratios": [1.6, 1]}
+    )
+    parts = {"read_ms": "file read", "first_ms": "first picture", "complete_ms": "complete image"}
+    labels = [f"{row['peer']}, {row['cache']} cache" for row in rows]
+    for i, row in enumerate(rows):
+        start = 0.0
+        for (key, label), color in zip(parts.items(), (_YELLOW, _BLUE, _SKY)):
+            end = row[key]["median"]
+            left.barh(i, end - start, 0.6, left=start, color=color, label=None if i else label)
+            start = end
+        left.text(start, i, f" {number(start)}", va="center", fontsize=8)
+        color, marker = _CYCLE[i % len(_CYCLE)]
+        count = range(2, 2 + len(row["next_ms"]))
+        right.plot(count, row["next_ms"], color=color, marker=marker, ms=4, label=labels[i])
+    left.set_yticks(range(len(rows)), labels)
+    left.invert_yaxis()
+    left.margins(x=0.12)
+    left.grid(axis="y", visible=False)
+    left.set_xlabel("milliseconds from opening the file")
+    left.legend(loc="upper left", bbox_to_anchor=(0.0, -0.25), ncols=3, fontsize=8)
+    right.set_ylim(bottom=0)
+    right.set_ylabel("ms")
+    right.set_xlabel("image")
+    right.xaxis.set_major_locator(MaxNLocator(integer=True))
+    right.legend(loc="upper left", bbox_to_anchor=(0.0, -0.25), fontsize=8)
+    figure.suptitle(_titled(record))
+    return figure
+
+
 # ---- long use
 
 
@@ -403,5 +484,7 @@ _DRAW = {
     "image_scaling": _draw_image_scaling,
     "volume_scaling": _draw_volume_scaling,
     "budget": _draw_budget,
+    "interactive": _draw_interactive,
+    "first_image": _draw_first_image,
     "soak": _draw_soak,
 }

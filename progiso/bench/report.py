@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +14,11 @@ from ..measure.isosurface import Isosurface
 from ..measure.machine import machine_in_words
 from ..measure.text import bytes_, count, milliseconds, number, percent, pixels, table
 from . import goals
+from .driver import MOVEMENTS
 from .errors import DEFAULT_DISTANCE
 from .fields import parse_field
+from .first_image import TIMES
+from .interactive import BASELINE
 from .literature import BANDWIDTH, SOURCE, literature
 from .volume_mapper import VolumeMapper
 
@@ -648,6 +651,189 @@ def _budget_cells(point: dict[str, Any]) -> list[str]:
     return [*sizes, number(point["passes"]), *times]
 
 
+# ---- fly-throughs
+
+
+def _interactive(report: _Report, records: list[dict[str, Any]]) -> list[str]:
+    lines = [
+        "## Fly-throughs",
+        "",
+        "Milliseconds of complete images: median / 95 % / largest. Each way to an image runs in a "
+        "process of its own, after another one has filled the driver's cache of shaders, and makes "
+        "the movements in this order; VTK's ways show the decompressed volume. *Next view*: from "
+        "all around, at each isovalue. *Moved by 2°*: after an image for which the cache of blocks "
+        "was emptied. *Orbit*: by 2° a frame. *Dolly*: to half the distance, then to four times "
+        "it. *Far view*: an orbit at eight times it. FlyingEdges extracts anew where the isovalue "
+        "changes.",
+        "",
+    ]
+    for record in records:
+        lines += _flight(report, record)
+    return lines
+
+
+def _flight(report: _Report, record: dict[str, Any]) -> list[str]:
+    """Tabulate the frames of a volume and a size, and what they are judged by."""
+    rows = [
+        [row["peer"], row["failed"], *[""] * len(MOVEMENTS)]
+        if "failed" in row
+        else [
+            row["peer"],
+            row["commit"] or "–",
+            *(_percentiles(row["movements"][name]["time"]) for name in MOVEMENTS),
+        ]
+        for row in record["rows"]
+    ]
+    by_peer = {row["peer"]: row for row in record["rows"] if "failed" not in row}
+    judged = [
+        [f"ours: {name}", *(_judged(report, record, judge(name)) for name in MOVEMENTS)]
+        for name, judge in _flight_judges(report, record, by_peer)
+    ]
+    return [
+        f"### {_of(record)}, {record['frames']} frames",
+        "",
+        *table(["way", "commit", *MOVEMENTS], rows),
+        *table(["goal", *MOVEMENTS], judged),
+    ]
+
+
+def _percentiles(time: dict[str, Any]) -> str:
+    return " / ".join(number(time[key]) for key in ("median", "p95", "max"))
+
+
+_Judge = Callable[[str], "tuple[str, goals.Verdict | None]"]
+
+
+def _flight_judges(
+    report: _Report, record: dict[str, Any], by_peer: dict[str, dict[str, Any]]
+) -> Iterator[tuple[str, _Judge]]:
+    """Yield what the frames are compared with, and what makes figure and verdict of a movement."""
+    machine, field, size = report.machine, record["field"], record["size"]
+    ours = by_peer[Isosurface.label]["movements"]
+    mapper, baseline = by_peer.get(VolumeMapper.label), by_peer.get(BASELINE)
+    if mapper is not None:
+        times = mapper["movements"]
+
+        def against_mapper(name: str) -> tuple[str, goals.Verdict | None]:
+            mine, theirs = ours[name]["time"], times[name]["time"]
+            verdict = goals.movement_against_mapper(machine, field, name, mine, theirs)
+            return _ratio(mine, theirs), verdict
+
+        yield "of VTK's mapper's", against_mapper
+    if baseline is not None:
+        earlier = baseline["movements"]
+
+        def against_baseline(name: str) -> tuple[str, goals.Verdict | None]:
+            mine, theirs = ours[name], earlier[name]
+            verdict = goals.movement_against_baseline(machine, field, size, name, mine, theirs)
+            cores = f"; CPU time {number(mine['cpu_ms'] / theirs['cpu_ms'])} ×"
+            return _ratio(mine["time"], theirs["time"]) + cores, verdict
+
+        yield f"of the baseline's ({baseline['commit']})", against_baseline
+
+    def longest(name: str) -> tuple[str, goals.Verdict | None]:
+        mine = ours[name]["time"]
+        return f"{number(mine['max'] / mine['median'])} ×", goals.no_hitch(machine, name, mine)
+
+    yield "longest frame, of the median", longest
+
+
+def _ratio(ours: dict[str, Any], theirs: dict[str, Any]) -> str:
+    return " / ".join(number(ours[key] / theirs[key]) for key in ("median", "p95", "max")) + " ×"
+
+
+def _judged(
+    report: _Report, record: dict[str, Any], figure: tuple[str, goals.Verdict | None]
+) -> str:
+    """Make a cell of a figure and, where there is a goal, its verdict."""
+    text, verdict = figure
+    return text if verdict is None else f"{text} ({report.goal(record, verdict)})"
+
+
+# ---- first images in a new process
+
+_TIMES = {
+    "window_ms": "empty window",
+    "read_ms": "file read",
+    "first_ms": "first picture",
+    "complete_ms": "complete image",
+}
+
+
+def _first_image(report: _Report, records: list[dict[str, Any]]) -> list[str]:
+    rows = [cells for record in records for cells in _first_image_rows(report, record)]
+    headers = [
+        "field", "way", "commit", "driver's cache of shaders",
+        *(_TIMES[key] for key in TIMES), "next images: median, max", "goal",
+    ]  # fmt: skip
+    splits = [cells for record in records for cells in _split_rows(record)]
+    return [
+        "## First image of a new process",
+        "",
+        "Medians; the empty window is there before. Then the times count from opening the file, "
+        "which is in the system's file cache, to where it is *read*, to a *first picture* of "
+        "which a part is complete, and to the *complete image*. The *next images* move by 2° each.",
+        "",
+        *table(headers, rows),
+        *_split(splits),
+    ]
+
+
+def _first_image_rows(report: _Report, record: dict[str, Any]) -> Iterator[list[str]]:
+    by_kind = {(row["peer"], row["cache"]): row for row in record["rows"]}
+    for (peer, cache), row in by_kind.items():
+        verdicts: list[goals.Verdict | None] = []
+        if (peer, cache) == (Isosurface.label, "emptied"):
+            kept = by_kind[peer, "kept"]
+            verdicts = [
+                *goals.first_picture(report.machine, record["field"], record["size"], row),
+                goals.next_images(report.machine, row, kept),
+            ]
+        yield [
+            _of(record),
+            peer,
+            row["commit"] or "–",
+            cache,
+            *(milliseconds(row[key]["median"]) for key in TIMES),
+            f"{milliseconds(row['next']['median'])}, {milliseconds(row['next']['max'])}",
+            report.goal(record, *verdicts),
+        ]
+
+
+def _split(rows: list[list[str]]) -> list[str]:
+    """Tabulate how the time up to the complete image splits; nothing where no mapper tells."""
+    if not rows:
+        return []
+    headers = [
+        "field", "driver's cache of shaders", "input", "upload", "ranges and decoding",
+        "waits for programs", "programs: until compiled (waited)",
+    ]  # fmt: skip
+    return [
+        "What the mapper tells of the last of these processes. Programs that the driver compiles "
+        "in threads overlap each other and the rest; the render waits for those that it needs:",
+        "",
+        *table(headers, rows),
+    ]
+
+
+def _split_rows(record: dict[str, Any]) -> Iterator[list[str]]:
+    for row in record["rows"]:
+        loading = row["statistics"].get("loading")
+        if loading is None:  # as with the earlier commit
+            continue
+        programs = sorted(loading["programs"].items(), key=lambda item: -item[1]["ms"])
+        yield [
+            _of(record),
+            row["cache"],
+            *(milliseconds(loading[key]) for key in ("input_ms", "upload_ms", "preparation_ms")),
+            milliseconds(sum(times["waited_ms"] for _, times in programs)),
+            ", ".join(
+                f"{name} {number(times['ms'])} ({number(times['waited_ms'])})"
+                for name, times in programs
+            ),
+        ]
+
+
 # ---- long use
 
 
@@ -709,5 +895,7 @@ _SECTIONS = {
     "image_scaling": _image_scaling,
     "volume_scaling": _volume_scaling,
     "budget": _budget,
+    "interactive": _interactive,
+    "first_image": _first_image,
     "soak": _soak,
 }

@@ -7,9 +7,12 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
+from ..measure.text import pixels
 from .budget import measure_budget
 from .errors import measure_errors
 from .fields import Field, parse_field
+from .first_image import measure_first_image
+from .interactive import measure_interactive
 from .latency import measure_latency
 from .peers import measure_peers
 from .protocol import measure_protocol
@@ -21,7 +24,9 @@ from .soak import measure_soak
 SCANS = ("ct-cranium-r8", "mri-brain-r8")
 SMALL = ("marschner-lobb-128-k6-r4", "gyroid-256-k6-r2")
 LARGE = ("gyroid-512-k12-r4", "gyroid-1024-k24-r4", "gyroid-1024-k24-r2", "gyroid-1024-k6-r2")
+LARGEST = ("gyroid-2048x2048x1920-k48-r1", "gyroid-2048x2048x1920-k6-r1")
 QUICK = (*SCANS, SMALL[0])
+FLOWN_THROUGH = (SMALL[1], LARGE[0], LARGE[1], LARGE[3], *LARGEST)
 
 #: Kind of a record, what it is of, and the function that makes it.
 Step = tuple[str, str, Callable[[], dict[str, Any]]]
@@ -59,6 +64,15 @@ SETS = {
     "errors": Defaults("depth error against run time", (*SCANS, *SMALL), PEERS, 10),
     "rates": Defaults("errors and topology over the bits per sample", (*SCANS, *SMALL), PEERS, 10),
     "budget": Defaults("time and memory within memory budgets", (LARGE[0],), PEERS, 10),
+    "interactive": Defaults(
+        "frames of a fly-through, beside VTK's and an earlier commit's", FLOWN_THROUGH, PEERS, 10
+    ),
+    "first-image": Defaults(
+        "from opening a file to its image, shaders compiled or not",
+        (SMALL[1], LARGE[3]),
+        PEERS,
+        10,
+    ),
     "soak": Defaults("memory over thousands of random changes", ("gyroid-64-k3-r8",), PEERS, 2),
 }
 
@@ -109,6 +123,18 @@ def _scaling(fields: Sequence[Field], settings: Settings) -> list[Step]:
     return _each("image_scaling", measure_image_scaling, fields, settings) + volumes
 
 
+def _interactive(fields: Sequence[Field], settings: Settings) -> list[Step]:
+    return [
+        (
+            "interactive",
+            f"{field.name}, {pixels(size)}",
+            partial(measure_interactive, field, replace(settings, size=size)),
+        )
+        for field in fields
+        for size in settings.images
+    ]
+
+
 def _quick(fields: Sequence[Field], settings: Settings) -> list[Step]:
     fixed = replace(settings, isovalues=PEERS, images=_QUICK_IMAGES)
     width, height = settings.size
@@ -131,5 +157,7 @@ _STEPS: dict[str, Callable[[Sequence[Field], Settings], list[Step]]] = {
     "errors": partial(_each, "errors", measure_errors),
     "rates": partial(_each, "rates", measure_rates),
     "budget": partial(_each, "budget", measure_budget),
+    "interactive": _interactive,
+    "first-image": partial(_each, "first_image", measure_first_image),
     "soak": partial(_each, "soak", measure_soak),
 }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from vtkmodules.vtkCommonDataModel import vtkImageData
@@ -12,6 +13,9 @@ from .fields import Field
 
 #: Widths and heights that the scaling with image size goes through.
 IMAGE_SIZES = ((640, 360), (1280, 720), (1920, 1080), (3840, 2160))
+
+#: Those of a fly-through.
+FLIGHT_SIZES = (IMAGE_SIZES[1], IMAGE_SIZES[3])
 
 #: Stands for a field's fixed isovalues instead of a number of random ones.
 PEERS = "peers"
@@ -36,11 +40,15 @@ class Settings:
     largest : int, optional
         Largest side of the volumes in the scaling with volume size.
     images : tuple of tuple of int
-        Widths and heights in the scaling with image size.
+        Widths and heights in the scaling with image size, or of a fly-through.
     largest_mesh : int, optional
         Largest side of the volumes that meshes are made of.
+    largest_plain : int, optional
+        Largest side of the volumes that are shown decompressed in a fly-through.
     frames : int
-        Of the long run.
+        Of the long run, or of each movement of a fly-through.
+    baseline : pathlib.Path, optional
+        Where the package of an earlier commit is imported from, see `processes`.
     """
 
     size: tuple[int, int]
@@ -51,13 +59,20 @@ class Settings:
     largest: int | None = None
     images: tuple[tuple[int, int], ...] = IMAGE_SIZES
     largest_mesh: int | None = None
+    largest_plain: int | None = None
     frames: int = 10_000
+    baseline: Path | None = None
 
     def isovalues_of(self, field: Field) -> list[float]:
         """Return the isovalues that a field is rendered at."""
         if isinstance(self.isovalues, str):
             return list(field.isovalues)
         return field.random_isovalues(self.isovalues, self.seed)
+
+    def not_plain(self, field: Field) -> str | None:
+        """Return the reason why a field is not shown decompressed; None where it is."""
+        large = self.largest_plain is not None and max(field.dimensions) > self.largest_plain
+        return f"no plain volumes larger than {self.largest_plain}" if large else None
 
     def no_mesh_of(self, field: Field) -> str | None:
         """Return the reason why no mesh is made of a field; None where one is made."""

@@ -6,9 +6,11 @@ import statistics
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 
 def summary(milliseconds: Sequence[float]) -> dict[str, Any]:
-    """Compute median, mean and extremes of times.
+    """Compute median, mean, 95th percentile and extremes of times.
 
     Parameters
     ----------
@@ -18,7 +20,7 @@ def summary(milliseconds: Sequence[float]) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``count``, ``mean``, ``median``, ``min`` and ``max``.
+        ``count``, ``mean``, ``median``, ``p95``, ``min`` and ``max``.
 
     Examples
     --------
@@ -29,6 +31,7 @@ def summary(milliseconds: Sequence[float]) -> dict[str, Any]:
         "count": len(milliseconds),
         "mean": statistics.fmean(milliseconds),
         "median": statistics.median(milliseconds),
+        "p95": float(np.percentile(milliseconds, 95)),
         "min": min(milliseconds),
         "max": max(milliseconds),
     }

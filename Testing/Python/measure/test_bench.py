@@ -9,6 +9,7 @@ import os
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import progiso
 from helpers.programs import call_progiso
+from progiso import _built
 from progiso.bench import goals
 from progiso.bench.fields import parse_field
 from progiso.bench.literature import GPU
@@ -25,7 +27,10 @@ from progiso.bench.soak import growth
 from progiso.data import fetch
 from progiso.measure.document import load_document, merge
 
-TINY = ("--fields", "gyroid-24-k2-r8", "--size", "64x48", "--positions", 2)
+FIELD = ("--fields", "gyroid-24-k2-r8", "--positions", 2)
+TINY = (*FIELD, "--size", "64x48")
+#: This package, which stands for an earlier one, too.
+PACKAGE = Path(_built.__file__).parents[1]
 KINDS = {
     "quick": {"peers", "protocol", "latency", "errors", "image_scaling", "volume_scaling"},
     "paper": {"protocol", "latency"},
@@ -34,12 +39,16 @@ KINDS = {
     "errors": {"errors"},
     "rates": {"rates"},
     "budget": {"budget"},
+    "interactive": {"interactive"},
+    "first-image": {"first_image"},
     "soak": {"soak"},
 }
 OPTIONS = {
     "quick": ("--isovalues", 2),
     "paper": ("--isovalues", 2),
     "scaling": ("--largest", 64, "--images", "64x48,96x72"),
+    "interactive": ("--images", "64x48,48x64", "--frames", 3, "--baseline", PACKAGE),
+    "first-image": ("--baseline", PACKAGE),
     "soak": ("--frames", 40),
 }
 
@@ -56,7 +65,8 @@ def results(folder):
 
     def run(name):
         if not (folder / name).exists():
-            call_progiso(folder, "bench", name, *TINY, *OPTIONS.get(name, ()), "--output", name)
+            images = FIELD if name == "interactive" else TINY
+            call_progiso(folder, "bench", name, *images, *OPTIONS.get(name, ()), "--output", name)
         return folder / name
 
     return run
@@ -242,6 +252,10 @@ FAILURES = {
     "image too large": (["paper", "--size", "20000x5"], "16384"),
     "images": (["scaling", "--images", "64x48,wide"], "wide"),
     "largest": (["scaling", "--largest", "3"], "64"),
+    "baseline": (["interactive", "--baseline", "no-such-thing"], "no-such-thing"),
+    "baseline without a package": (["first-image", "--baseline", "an-empty-folder"], "holds no"),
+    "baseline that is no archive": (["interactive", "--baseline", "a-file"], "no archive"),
+    "frames": (["interactive", "--frames", "0"], "at least 1"),
     "output": (["peers", "--output", "a-file"], "a-file"),
     "no results": (["report", "none.json"], "none.json"),
     "not JSON": (["report", "a-file"], "a-file"),
@@ -254,6 +268,7 @@ FAILURES = {
 def test_errors_are_one_line(folder, case):
     arguments, word = FAILURES[case]
     (folder / "a-file").write_text("?")
+    (folder / "an-empty-folder").mkdir(exist_ok=True)
     (folder / "other.json").write_text('{"schema": 0}')
     (folder / "damaged.json").write_text('{"schema": 1}')
     lines = call_progiso(folder, "bench", *arguments, succeeds=False).strip().splitlines()
