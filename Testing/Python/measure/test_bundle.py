@@ -70,6 +70,15 @@ def test_the_callers_window_stays(bundle):
     )
 
 
+def test_packer_wants_a_prefix_with_a_package(tmp_path):
+    packer = [sys.executable, BENCHMARKS / "pack-bundle"]
+    done = subprocess.run(
+        [*packer, "--prefix", tmp_path, "--out", tmp_path / "out"], capture_output=True, text=True
+    )
+    assert done.returncode == 2 and f"{tmp_path}" in done.stderr and "no progiso" in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
 @pytest.mark.parametrize(
     "arguments, words",
     [(["--with", "no-such-file"], "no-such-file"), ([], "run without --package-only once")],
