@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <initializer_list>
 #include <set>
 #include <sstream>
 
@@ -30,12 +31,33 @@ std::set<std::string> OfferedExtensions()
   return offered;
 }
 
+// Does OpenGL's string contain one of these words?
+bool Names(GLenum what, std::initializer_list<const char*> words)
+{
+  const char* text = reinterpret_cast<const char*>(glGetString(what));
+  return text &&
+    std::any_of(
+      words.begin(), words.end(), [=](const char* word) { return std::strstr(text, word); });
+}
+
 bool IsSoftwareRenderer()
 {
-  const char* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-  return renderer &&
-    (std::strstr(renderer, "llvmpipe") || std::strstr(renderer, "softpipe") ||
-      std::strstr(renderer, "SWR"));
+  return Names(GL_RENDERER, { "llvmpipe", "softpipe", "SWR" });
+}
+
+// Only NVIDIA's driver is known to read large sparse buffers faster than plain ones; others may
+// back them by small pages.
+bool OffersFastSparseBuffers(const std::set<std::string>& offered)
+{
+  return offered.count("GL_ARB_sparse_buffer") > 0 && glBufferStorage &&
+    glBufferPageCommitmentARB && Names(GL_VENDOR, { "NVIDIA" });
+}
+
+std::int64_t AskSparsePage()
+{
+  GLint bytes = 0;
+  glGetIntegerv(GL_SPARSE_BUFFER_PAGE_SIZE_ARB, &bytes);
+  return bytes;
 }
 
 std::int64_t AskDeviceMemory(const std::set<std::string>& offered)
@@ -92,8 +114,8 @@ void Context::AskLimits()
 {
   const std::set<std::string> offered = OfferedExtensions();
   this->Limits.Software = IsSoftwareRenderer();
-  this->Limits.SparseBuffers =
-    offered.count("GL_ARB_sparse_buffer") > 0 && glBufferStorage && glBufferPageCommitmentARB;
+  this->Limits.SparseBuffers = OffersFastSparseBuffers(offered);
+  this->Limits.SparsePage = this->Limits.SparseBuffers ? AskSparsePage() : 0;
   // llvmpipe offers it, too, but compiles a stage where it first runs
   this->Limits.BackgroundCompiler =
     !this->Limits.Software && offered.count("GL_KHR_parallel_shader_compile") > 0;

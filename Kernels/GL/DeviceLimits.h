@@ -11,7 +11,8 @@ struct DeviceLimits
   std::int64_t LargestBuffer = 0;  ///< bytes of one storage buffer
   std::int64_t DeviceMemory = 0;   ///< bytes of graphics memory; 0: the GPU does not tell
   bool Software = false;           ///< no GPU: Mesa's llvmpipe
-  bool SparseBuffers = false;      ///< buffers may be committed page by page
+  bool SparseBuffers = false;      ///< buffers may be committed page by page, and large ones should
+  std::int64_t SparsePage = 0;     ///< bytes of such a page
   bool BackgroundCompiler = false; ///< the driver compiles in threads of its own, and tells when
 };
 

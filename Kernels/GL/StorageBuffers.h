@@ -26,6 +26,9 @@ public:
   /// does not need. A buffer that has its size already is kept; the contents of others are
   /// undefined.
   Status Allocate(Lifetime lifetime, const SceneNeeds& needs);
+  /// Makes the buffers of a lifetime, which are as large as another scene needed them, larger. They
+  /// keep their contents. A reserved buffer gets memory where it has none yet; another moves.
+  Status Grow(Lifetime lifetime, const SceneNeeds& before, const SceneNeeds& needs);
   /// Have all buffers of a lifetime the size that the scene needs?
   bool Has(Lifetime lifetime, const SceneNeeds& needs) const;
   /// Frees every buffer that the scene needs in another size, so that the sum of all never exceeds
@@ -39,16 +42,27 @@ public:
   /// Fills a buffer that the stages only read.
   void Upload(Buffer buffer, const std::vector<std::uint32_t>& words);
 
-  GLuint GetName(Buffer buffer) const { return this->Names[static_cast<int>(buffer)]; }
-  std::int64_t GetBytes(Buffer buffer) const { return this->Bytes[static_cast<int>(buffer)]; }
+  GLuint GetName(Buffer buffer) const { return this->Held[static_cast<int>(buffer)].Name; }
+  /// Of its memory: what is only reserved does not count.
+  std::int64_t GetBytes(Buffer buffer) const { return this->Held[static_cast<int>(buffer)].Bytes; }
 
 private:
-  Status Allocate(const BufferInfo& info, std::int64_t bytes);
+  struct HeldBuffer
+  {
+    GLuint Name = 0;
+    std::int64_t Bytes = 0;    ///< of its memory
+    std::int64_t Reserved = 0; ///< of its addresses, where memory is committed bit by bit
+  };
+
+  Status Allocate(const BufferInfo& info, const SceneNeeds& needs);
+  Status Make(const BufferInfo& info, const SceneNeeds& needs);
+  Status CommitMore(const BufferInfo& info, const SceneNeeds& before, const SceneNeeds& needs);
+  Status MakeLarger(const BufferInfo& info, const SceneNeeds& before, const SceneNeeds& needs);
+  bool Has(const BufferInfo& info, const SceneNeeds& needs) const;
   void Free(Buffer buffer);
 
   Context& Gl;
-  std::array<GLuint, NumberOfBuffers> Names = {};
-  std::array<std::int64_t, NumberOfBuffers> Bytes = {};
+  std::array<HeldBuffer, NumberOfBuffers> Held = {};
 };
 
 /// Makes a storage buffer; an error where it is too large, or the GPU has no room for it. `what` is
@@ -59,5 +73,9 @@ Status MakeStorageBuffer(
 /// NVIDIA backs a sparse buffer with large pages. Random reads of a plain buffer are as fast up to
 /// this size, and then 10 to 400 times slower.
 constexpr std::int64_t LargestPlainBuffer = 1LL << 27;
+
+/// Of decoded blocks neighbouring rays read neighbouring values, and a plain buffer is made 10
+/// times faster than a sparse one.
+constexpr std::int64_t LargestPlainValues = 1LL << 29;
 
 #endif

@@ -88,7 +88,7 @@ const Members BlockMembers = {
 
   MEMBER(Cache, Slots), MEMBER(Cache, MapPages), MEMBER(Cache, CannotGrow),
   MEMBER(Cache, SpeculationLimit), MEMBER(Cache, PixelsPerStraggler),
-  MEMBER(Cache, Padding0), MEMBER(Cache, Padding1), MEMBER(Cache, Padding2),
+  MEMBER(Cache, SlotCapacity), MEMBER(Cache, FirstNewSlot), MEMBER(Cache, FirstNewPage),
 
   MEMBER(Palette, Low), MEMBER(Palette, PerUnit),
   MEMBER(Palette, Padding0), MEMBER(Palette, Padding1),
@@ -120,8 +120,8 @@ const std::map<std::string, std::size_t> StorageMembers = {
   VARIABLE("Control.", Control, EvictByPages), VARIABLE("Control.", Control, Evicted),
   VARIABLE("Control.", Control, DeniedRequestsBefore),
   VARIABLE("Control.", Control, ContinuingRays), VARIABLE("Control.", Control, NextContinuingRays),
-  VARIABLE("Control.", Control, Padding0), VARIABLE("Control.", Control, Padding1),
-  VARIABLE("Control.", Control, Padding2), DISPATCH(CastGroups), DISPATCH(StragglerGroups),
+  VARIABLE("Control.", Control, KeptSlotsBegin), VARIABLE("Control.", Control, KeptFreeSlots),
+  VARIABLE("Control.", Control, Padding0), DISPATCH(CastGroups), DISPATCH(StragglerGroups),
   DISPATCH(FinishGroups), DISPATCH(RequestGroups), DISPATCH(DecodeGroups), DISPATCH(EvictGroups),
   VARIABLE("Control.", Control, Ages[0]),
 

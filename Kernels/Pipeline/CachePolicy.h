@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 // Decides how many slots the cache of decoded blocks has, from what the passes and the last images
-// needed. GPUs take long to make memory, and a new cache is empty: it is resized seldom and by
-// much.
+// needed. It grows before it is full, so that no image waits for memory, and bit by bit, because
+// GPUs take long to make much memory. It shrinks seldom: a smaller cache is a new one, and empty.
 #ifndef CachePolicy_h
 #define CachePolicy_h
 
@@ -15,26 +15,33 @@
 class CachePolicy
 {
 public:
-  /// A first cache is small, beside the most that memory allows.
+  /// A first cache is small, beside the most that memory allows: the first image grows it.
   static std::int64_t SlotsAtFirst(std::int64_t pixels, std::int64_t maximumSlots);
 
-  /// A cache with fewer slots than pixels grows as soon as a pass needs more. A larger one only
-  /// doubles, and only after several passes in a row were denied blocks: up to then eviction helps,
-  /// and another pass costs less than memory. Returns `slots` where it stays as it is.
+  /// A cache grows when it denies a pass blocks because it is too small for the image. Where it is
+  /// not, eviction helps: then only several denials in a row make it grow. Returns `slots` where it
+  /// stays as it is.
   std::int64_t SlotsAfterPass(const glsl::PassRecord& pass, std::int64_t slots, std::int64_t pixels,
     std::int64_t maximumSlots);
 
-  /// A cache that the last images left mostly unused shrinks, but not as far that it would soon
-  /// grow again.
-  std::int64_t SlotsForNewImage(std::int64_t slots) const;
+  /// A cache of which the last image used more than half grows. One that the last images left
+  /// mostly unused shrinks, but not as far that it would soon grow again, and only after a pause of
+  /// so many milliseconds: not while a user turns the volume.
+  std::int64_t SlotsForNewImage(
+    std::int64_t slots, std::int64_t maximumSlots, double idleMilliseconds);
 
   /// Records how many slots a complete image used.
   void RecordImage(std::int64_t touchedSlots);
+  /// Records that the cache has grown.
+  void RecordGrowth();
   /// Forgets all that was recorded of another cache.
   void Reset();
 
 private:
+  std::int64_t StepFrom(std::int64_t slots, std::int64_t maximumSlots) const;
+
   int ConsecutiveDenials = 0;           ///< passes in a row that were denied blocks
+  std::int64_t Wanted = 0;              ///< slots that it grows to
   std::deque<std::int64_t> RecentUsage; ///< slots that the last images used, newest last
 };
 

@@ -4,6 +4,7 @@
 
 #include "GL/HostTransfer.h"
 #include "GL/SnapshotQueue.h"
+#include "GL/StorageBuffers.h"
 #include "GL/UniformBuffers.h"
 
 #include <algorithm>
@@ -35,15 +36,15 @@ std::int64_t ChooseBudget(
                                  : most;
 }
 
-// As many slots as the volume has blocks, one buffer can hold and the budget has room for.
-std::int64_t LimitSlots(const DeviceLimits& limits, std::int64_t budget, const SceneNeeds& scene)
+// As many slots, up to `most`, as so many bytes have room for.
+std::int64_t SlotsWithin(std::int64_t bytes, const SceneNeeds& scene, std::int64_t most)
 {
   std::int64_t low = 0;
-  std::int64_t high = std::min(scene.Blocks, limits.LargestBuffer / BytesPerSlot(scene));
+  std::int64_t high = most;
   while (low < high)
   {
     const std::int64_t middle = (low + high + 1) / 2;
-    if (BytesBesideStream(WithCache(scene, middle)) <= budget)
+    if (BytesBesideStream(WithCache(scene, middle)) <= bytes)
     {
       low = middle;
     }
@@ -52,7 +53,31 @@ std::int64_t LimitSlots(const DeviceLimits& limits, std::int64_t budget, const S
       high = middle - 1;
     }
   }
-  return low >= LeastSlots(scene) ? low : 0;
+  return low;
+}
+
+// As many slots as the volume has blocks and one buffer can hold.
+std::int64_t SlotsOfOneBuffer(const DeviceLimits& limits, const SceneNeeds& scene)
+{
+  const std::int64_t most = std::min(scene.Blocks, limits.LargestBuffer / BytesPerSlot(scene));
+  return scene.SlotCapacity > 0 ? std::min(most, scene.SlotCapacity) : most;
+}
+
+std::int64_t LimitSlots(const DeviceLimits& limits, std::int64_t budget, const SceneNeeds& scene)
+{
+  const std::int64_t slots = SlotsWithin(budget, scene, SlotsOfOneBuffer(limits, scene));
+  return slots >= LeastSlots(scene) ? slots : 0;
+}
+
+// Bytes of the largest of the cache's buffers.
+std::int64_t LargestCacheBuffer(const SceneNeeds& needs)
+{
+  std::int64_t largest = 0;
+  for (const BufferInfo& info : PipelineBuffers())
+  {
+    largest = std::max(largest, info.Life == Lifetime::Cache ? info.Bytes(needs) : 0);
+  }
+  return largest;
 }
 }
 
@@ -87,7 +112,40 @@ SceneNeeds WithWholeVolume(const SceneNeeds& scene)
   needs.Cached = false;
   needs.Slots = scene.Blocks;
   needs.MapPages = 0;
+  needs.SlotCapacity = 0;
   return needs;
+}
+
+// The parts of the buffer of samples begin where memory can be committed: the capacity is rounded.
+SceneNeeds WithReservation(const DeviceLimits& limits, const SceneNeeds& scene)
+{
+  SceneNeeds needs = scene;
+  needs.SlotCapacity = 0;
+  const std::int64_t most = SlotsOfOneBuffer(limits, needs);
+  if (!limits.SparseBuffers || BytesPerSlot(needs) * most <= LargestPlainValues)
+  {
+    return needs;
+  }
+  const std::int64_t multiple =
+    std::max<std::int64_t>(limits.SparsePage / LeastBytesInPart(needs), 1);
+  const std::int64_t up = (most + multiple - 1) / multiple * multiple;
+  const bool fits = BytesPerSlot(needs) * up <= limits.LargestBuffer;
+  needs.SlotCapacity = fits ? up : most / multiple * multiple;
+  needs.MapPageCapacity = WithCache(needs, needs.SlotCapacity).MapPages;
+  needs.CommitBytes = limits.SparsePage;
+  return needs;
+}
+
+CacheGrowth PlanGrowth(const MemoryPlan& plan, const SceneNeeds& scene, std::int64_t wanted)
+{
+  const std::int64_t most = std::min(wanted, plan.MaximumSlots);
+  if (scene.SlotCapacity > 0)
+  {
+    return { most, true };
+  }
+  const std::int64_t slots = SlotsWithin(plan.Budget - LargestCacheBuffer(scene), scene, most);
+  const bool enough = slots == most || 2 * slots >= 3 * scene.Slots;
+  return enough ? CacheGrowth{ slots, true } : CacheGrowth{ plan.MaximumSlots, false };
 }
 
 std::int64_t BytesBesideStream(const SceneNeeds& needs)

@@ -30,6 +30,23 @@ SceneNeeds WithCache(const SceneNeeds& scene, std::int64_t slots);
 SceneNeeds WithWholeVolume(const SceneNeeds& scene);
 ///@}
 
+/// The scene with addresses reserved for a cache of any size, where the GPU can do that and plain
+/// buffers of this size would be slow.
+SceneNeeds WithReservation(const DeviceLimits& limits, const SceneNeeds& scene);
+
+struct CacheGrowth
+{
+  std::int64_t Slots = 0;
+  bool Keeps = true; ///< what the cache holds; false: it is made anew
+};
+
+/// How far the scene's cache can grow at once towards so many slots, at most the plan's, so that
+/// the sum of all memory never exceeds the budget. A reserved cache just gets more memory. Any
+/// other moves to larger buffers, one after the other: for a moment there is one of them twice. Up
+/// to half of what the budget has room for, this fits. Beyond, such a cache is made anew, once, as
+/// large as the plan allows.
+CacheGrowth PlanGrowth(const MemoryPlan& plan, const SceneNeeds& scene, std::int64_t wanted);
+
 /// Bytes of all GPU memory beside the compressed stream.
 std::int64_t BytesBesideStream(const SceneNeeds& needs);
 

@@ -196,48 +196,96 @@ Status ProgressivePipeline::DecodeVolume(std::vector<float>& values)
 Status ProgressivePipeline::MakeCache(bool newImage)
 {
   const std::int64_t most = this->Plan.MaximumSlots;
-  std::int64_t slots = this->Needs.Slots;
-  if (slots == 0)
+  const std::int64_t before = this->Needs.Slots;
+  std::int64_t slots = before;
+  if (before == 0)
   {
     slots = CachePolicy::SlotsAtFirst(this->Needs.Pixels, most);
   }
   else if (newImage)
   {
-    slots = this->Policy.SlotsForNewImage(slots);
+    slots = this->Policy.SlotsForNewImage(before, most, this->SinceImage.GetMilliseconds());
   }
-  const bool same = this->Gpu->Buffers.Has(Lifetime::Cache, WithCache(this->Needs, slots)) &&
-    this->Cache.CannotGrow == (slots == most ? 1u : 0u);
-  if (!same)
+  if (before == 0 || slots < before || !this->Gpu->Buffers.Has(Lifetime::Cache, this->Needs))
   {
-    this->ResizeCache(slots);
+    this->RemakeCache(slots);
+  }
+  else if (slots > before && this->Gpu->IsReady(Stage::CacheUnwind) &&
+    this->Gpu->IsReady(Stage::CacheGrow))
+  {
+    this->GrowCache(slots, true);
   }
   return this->GetStatus();
 }
 
-// A resized cache is empty: rays ask again for what they still need.
-void ProgressivePipeline::ResizeCache(std::int64_t slots)
+// A cache that is made anew is empty: rays ask again for what they still need.
+void ProgressivePipeline::RemakeCache(std::int64_t slots)
 {
   this->Needs = WithCache(this->Needs, slots);
-  this->Gpu->SetNeeds(this->Needs);
-  if (!this->Gpu->Buffers.Allocate(Lifetime::Cache, this->Needs))
+  if (!this->CheckCache(this->Gpu->Buffers.Allocate(Lifetime::Cache, this->Needs)))
   {
-    this->Gpu->Buffers.Free(Lifetime::Cache);
-    this->Needs.Slots = 0;
-    return; // the context keeps the error
+    return;
   }
-  this->Cache.Slots = static_cast<std::uint32_t>(slots);
-  this->Cache.MapPages = static_cast<std::uint32_t>(this->Needs.MapPages);
-  this->Cache.CannotGrow = slots == this->Plan.MaximumSlots ? 1 : 0;
-  this->UploadCacheBlock();
+  this->FillCacheBlock(0, 0);
   const std::int64_t items = std::max(slots, this->Needs.Macrocells);
   this->Gpu->Dispatch(
     Stage::CacheReset, std::min(GroupsFor(Stage::CacheReset, items), MaximumResetGroups));
-  this->PassesBeforeCache = this->Log.GetSubmitted();
   this->Policy.Reset();
+}
+
+// Gives the cache more slots while it keeps what it holds. `ahead`: they are not needed yet.
+void ProgressivePipeline::GrowCache(std::int64_t slots, bool ahead)
+{
+  const SceneNeeds before = this->Needs;
+  const CacheGrowth growth = PlanGrowth(this->Plan, before, slots);
+  if (!growth.Keeps)
+  {
+    if (!ahead)
+    {
+      this->RemakeCache(growth.Slots);
+    }
+    return;
+  }
+  this->Needs = WithCache(before, growth.Slots);
+  if (!this->CheckCache(this->Gpu->Buffers.Grow(Lifetime::Cache, before, this->Needs)))
+  {
+    return;
+  }
+  this->FillCacheBlock(before.Slots, before.MapPages);
+  for (const Stage stage : { Stage::CacheUnwind, Stage::CacheGrow })
+  {
+    this->Gpu->Dispatch(stage, std::min(GroupsFor(stage, this->Needs.Slots), MaximumResetGroups));
+  }
+  this->Policy.RecordGrowth();
+}
+
+// Where the GPU has no room for the cache, there is none; the context keeps the error.
+bool ProgressivePipeline::CheckCache(const Status& made)
+{
+  if (!made)
+  {
+    this->Gpu->Buffers.Free(Lifetime::Cache);
+    this->Needs.Slots = 0;
+  }
+  this->Gpu->SetNeeds(this->Needs);
+  return made.IsOk();
+}
+
+void ProgressivePipeline::FillCacheBlock(std::int64_t firstNewSlot, std::int64_t firstNewPage)
+{
+  const SceneNeeds& needs = this->Needs;
+  this->Cache.Slots = static_cast<std::uint32_t>(needs.Slots);
+  this->Cache.MapPages = static_cast<std::uint32_t>(needs.MapPages);
+  this->Cache.SlotCapacity = static_cast<std::uint32_t>(std::max(needs.Slots, needs.SlotCapacity));
+  this->Cache.FirstNewSlot = static_cast<std::uint32_t>(firstNewSlot);
+  this->Cache.FirstNewPage = static_cast<std::uint32_t>(firstNewPage);
+  this->UploadCacheBlock();
+  this->PassesBeforeCache = this->Log.GetSubmitted();
 }
 
 void ProgressivePipeline::UploadCacheBlock()
 {
+  this->Cache.CannotGrow = this->Needs.Slots >= this->Plan.MaximumSlots ? 1 : 0;
   this->Cache.SpeculationLimit = static_cast<std::uint32_t>(this->Settings.SpeculationLimit);
   this->Cache.PixelsPerStraggler = this->ChoosePixelsPerStraggler();
   this->Gpu->Uniforms.Upload(this->Cache);
@@ -300,7 +348,7 @@ void ProgressivePipeline::DropDecodedBlocks()
   }
   else if (this->Needs.Slots > 0)
   {
-    this->ResizeCache(this->Needs.Slots);
+    this->RemakeCache(this->Needs.Slots);
   }
 }
 
@@ -322,7 +370,9 @@ void ProgressivePipeline::UpdateNeeds(const PipelineScene& scene)
 // Makes each buffer as large as the scene needs and the budget allows.
 Status ProgressivePipeline::MakeRoom(bool newImage)
 {
-  this->Plan = PlanMemory(this->Gpu->Gl.GetLimits(), this->Settings, this->Needs);
+  const DeviceLimits& limits = this->Gpu->Gl.GetLimits();
+  this->Needs = WithReservation(limits, this->Needs);
+  this->Plan = PlanMemory(limits, this->Settings, this->Needs);
   if (this->Plan.Cached && this->Plan.MaximumSlots == 0)
   {
     return this->Gpu->Gl.Fail(Status::Error("the memory budget of ", this->Plan.Budget,
@@ -506,9 +556,9 @@ void ProgressivePipeline::AwaitPass()
   {
     const std::int64_t slots = this->Policy.SlotsAfterPass(
       *pass, this->Needs.Slots, this->Needs.Pixels, this->Plan.MaximumSlots);
-    if (slots != this->Needs.Slots)
+    if (slots > this->Needs.Slots)
     {
-      this->ResizeCache(slots);
+      this->GrowCache(slots, false);
     }
   }
   if (this->Log.GetRemainingRays() == 0)
@@ -526,6 +576,7 @@ void ProgressivePipeline::EndImage()
 {
   this->Gpu->Snapshots.Clear(); // those of passes that were not needed
   this->Log.EndImage();
+  this->SinceImage = Stopwatch();
   this->Gpu->Request(Urgency::OnDemand); // there is time now
   if (!this->Log.GetPasses().empty())
   {

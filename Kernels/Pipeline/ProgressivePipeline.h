@@ -10,6 +10,7 @@
 #define ProgressivePipeline_h
 
 #include "GL/Device.h"
+#include "GL/Stopwatch.h"
 #include "Pipeline/CachePolicy.h"
 #include "Pipeline/HitReadback.h"
 #include "Pipeline/MemoryPlan.h"
@@ -116,7 +117,10 @@ private:
   Status UploadVolume();
   void DecodeWholeVolume();
   Status MakeCache(bool newImage);
-  void ResizeCache(std::int64_t slots);
+  void RemakeCache(std::int64_t slots);
+  void GrowCache(std::int64_t slots, bool ahead);
+  void FillCacheBlock(std::int64_t firstNewSlot, std::int64_t firstNewPage);
+  bool CheckCache(const Status& made);
   void UploadCacheBlock();
   std::uint32_t ChoosePixelsPerStraggler();
   void UseReadyPrograms();
@@ -143,7 +147,8 @@ private:
   double UploadMilliseconds = 0.0;
   bool CacheToEmpty = false;
   bool Started = false;
-  std::int64_t PassesBeforeCache = 0; ///< submitted before the cache was last made
+  std::int64_t PassesBeforeCache = 0; ///< submitted before the cache got its size
+  Stopwatch SinceImage;               ///< the last one
 };
 
 #endif

@@ -8,6 +8,8 @@ namespace
 {
 constexpr std::int64_t Pixels = 100000;
 constexpr std::int64_t Maximum = 1000000; // slots
+constexpr double NoPause = 1999.0;        // milliseconds
+constexpr double Pause = 2000.0;
 
 // A pass that used so many slots and was denied so many blocks.
 glsl::PassRecord Pass(std::uint32_t touched, std::uint32_t denied)
@@ -25,6 +27,7 @@ TEST(CachePolicy, FirstCacheHasASlotForFourPixels)
   EXPECT_EQ(CachePolicy::SlotsAtFirst(4 * 16384 + 4, Maximum), 16385);
   EXPECT_EQ(CachePolicy::SlotsAtFirst(4 * 16384 - 4, Maximum), 16384);
   EXPECT_EQ(CachePolicy::SlotsAtFirst(1, Maximum), 16384);
+  EXPECT_EQ(CachePolicy::SlotsAtFirst(3840 * 2160, Maximum), 262144);
   EXPECT_EQ(CachePolicy::SlotsAtFirst(1280 * 720, 3000), 3000);
 }
 
@@ -43,45 +46,29 @@ TEST(CachePolicy, SmallCacheGrowsAtOnceFourfold)
   EXPECT_EQ(policy.SlotsAfterPass(Pass(16384, 1), 16384, Pixels, Maximum), 4 * 16384);
 }
 
-TEST(CachePolicy, SmallCacheGrowsToTwiceWhatIsNeeded)
+TEST(CachePolicy, GrowsToTwiceWhatIsNeeded)
 {
-  CachePolicy policy;
-  EXPECT_EQ(
-    policy.SlotsAfterPass(Pass(16384, 16384 + 1), 16384, Pixels, Maximum), 2 * (2 * 16384 + 1));
-  EXPECT_EQ(policy.SlotsAfterPass(Pass(16384, 16384), 16384, Pixels, Maximum), 4 * 16384);
+  EXPECT_EQ(CachePolicy().SlotsAfterPass(Pass(16384, 16384 + 1), 16384, Pixels, Maximum),
+    2 * (2 * 16384 + 1));
+  EXPECT_EQ(CachePolicy().SlotsAfterPass(Pass(16384, 16384), 16384, Pixels, Maximum), 4 * 16384);
+  EXPECT_EQ(CachePolicy().SlotsAfterPass(Pass(Pixels, 1), Pixels, Pixels, Maximum), 2 * Pixels + 2);
 }
 
-TEST(CachePolicy, SmallCacheWithRoomLeftGrowsOnlyWhenDeniedAgainAndAgain)
+TEST(CachePolicy, WithRoomLeftGrowsOnlyWhenDeniedAgainAndAgain)
 {
-  // blocks are denied, but not because all slots are in use: map pages ran out
+  // blocks are denied, but not because all slots are in use: others' blocks are, or pages ran out
   CachePolicy policy;
+  const glsl::PassRecord denied = Pass(10000, 6384);
   for (int pass = 0; pass < 3; ++pass)
   {
-    EXPECT_EQ(policy.SlotsAfterPass(Pass(10000, 6384), 16384, Pixels, Maximum), 16384);
+    EXPECT_EQ(policy.SlotsAfterPass(denied, 16384, Pixels, Maximum), 16384);
   }
-  EXPECT_EQ(policy.SlotsAfterPass(Pass(10000, 6384), 16384, Pixels, Maximum), 2 * 16384);
-}
-
-TEST(CachePolicy, LargeCacheDoublesAfterFourDenialsInARow)
-{
-  CachePolicy policy;
-  const glsl::PassRecord denied = Pass(Pixels, 5000);
+  EXPECT_EQ(policy.SlotsAfterPass(Pass(10000, 0), 16384, Pixels, Maximum), 16384);
   for (int pass = 0; pass < 3; ++pass)
   {
-    EXPECT_EQ(policy.SlotsAfterPass(denied, Pixels, Pixels, Maximum), Pixels);
+    EXPECT_EQ(policy.SlotsAfterPass(denied, 16384, Pixels, Maximum), 16384);
   }
-  EXPECT_EQ(policy.SlotsAfterPass(Pass(Pixels, 0), Pixels, Pixels, Maximum), Pixels);
-  for (int pass = 0; pass < 3; ++pass)
-  {
-    EXPECT_EQ(policy.SlotsAfterPass(denied, Pixels, Pixels, Maximum), Pixels);
-  }
-  EXPECT_EQ(policy.SlotsAfterPass(denied, Pixels, Pixels, Maximum), 2 * Pixels);
-}
-
-TEST(CachePolicy, CacheIsSmallWithFewerSlotsThanPixels)
-{
-  CachePolicy policy;
-  EXPECT_EQ(policy.SlotsAfterPass(Pass(Pixels, 1), Pixels - 1, Pixels, Maximum), 4 * (Pixels - 1));
+  EXPECT_EQ(policy.SlotsAfterPass(denied, 16384, Pixels, Maximum), 2 * 16384);
 }
 
 TEST(CachePolicy, NeverExceedsTheMaximum)
@@ -89,17 +76,54 @@ TEST(CachePolicy, NeverExceedsTheMaximum)
   CachePolicy policy;
   EXPECT_EQ(policy.SlotsAfterPass(Pass(16384, 1), 16384, Pixels, 20000), 20000);
   EXPECT_EQ(policy.SlotsAfterPass(Pass(20000, 1), 20000, Pixels, 20000), 20000);
+  policy.RecordImage(20000);
+  EXPECT_EQ(policy.SlotsForNewImage(16384, 20000, NoPause), 20000);
 }
 
-TEST(CachePolicy, ResetForgetsDenials)
+TEST(CachePolicy, GrowthForgetsDenials)
 {
   CachePolicy policy;
   for (int pass = 0; pass < 3; ++pass)
   {
-    policy.SlotsAfterPass(Pass(Pixels, 1), Pixels, Pixels, Maximum);
+    policy.SlotsAfterPass(Pass(0, 1), Pixels, Pixels, Maximum);
   }
+  policy.RecordGrowth();
+  EXPECT_EQ(policy.SlotsAfterPass(Pass(0, 1), Pixels, Pixels, Maximum), Pixels);
+}
+
+TEST(CachePolicy, OnlyTheFirstImageGrowsByMoreThanAStep)
+{
+  const std::int64_t much = 100 * Maximum;
+  CachePolicy policy;
+  EXPECT_EQ(policy.SlotsAfterPass(Pass(Pixels, 3 * Maximum), Pixels, Pixels, much),
+    2 * (Pixels + 3 * Maximum));
   policy.Reset();
-  EXPECT_EQ(policy.SlotsAfterPass(Pass(Pixels, 1), Pixels, Pixels, Maximum), Pixels);
+  policy.RecordImage(Pixels);
+  EXPECT_EQ(
+    policy.SlotsAfterPass(Pass(Pixels, 3 * Maximum), Pixels, Pixels, much), Pixels + 262144);
+  // denied again, the cache gets the next step, but not where the pass got all that it wanted
+  EXPECT_EQ(policy.SlotsAfterPass(Pass(Pixels, 0), Pixels + 262144, Pixels, much), Pixels + 262144);
+  EXPECT_EQ(
+    policy.SlotsAfterPass(Pass(Pixels, 1), Pixels + 262144, Pixels, much), Pixels + 2 * 262144);
+}
+
+TEST(CachePolicy, GrowsForANewImageWhenTheLastUsedMoreThanHalf)
+{
+  CachePolicy policy;
+  EXPECT_EQ(policy.SlotsForNewImage(16384, Maximum, NoPause), 16384);
+  policy.RecordImage(8192);
+  EXPECT_EQ(policy.SlotsForNewImage(16384, Maximum, NoPause), 16384);
+  policy.RecordImage(8193);
+  EXPECT_EQ(policy.SlotsForNewImage(16384, Maximum, NoPause), 2 * 8193);
+}
+
+TEST(CachePolicy, GrowsStepByStepForNewImages)
+{
+  CachePolicy policy;
+  policy.RecordImage(300000);
+  EXPECT_EQ(policy.SlotsForNewImage(100000, Maximum, NoPause), 100000 + 262144);
+  policy.RecordImage(300000);
+  EXPECT_EQ(policy.SlotsForNewImage(100000 + 262144, Maximum, NoPause), 600000);
 }
 
 TEST(CachePolicy, ShrinksWhenEightImagesUsedLessThanAQuarter)
@@ -108,10 +132,21 @@ TEST(CachePolicy, ShrinksWhenEightImagesUsedLessThanAQuarter)
   for (int image = 0; image < 7; ++image)
   {
     policy.RecordImage(image == 3 ? 24999 : 10000);
-    EXPECT_EQ(policy.SlotsForNewImage(100000), 100000);
+    EXPECT_EQ(policy.SlotsForNewImage(100000, Maximum, Pause), 100000);
   }
   policy.RecordImage(10000);
-  EXPECT_EQ(policy.SlotsForNewImage(100000), 2 * 24999);
+  EXPECT_EQ(policy.SlotsForNewImage(100000, Maximum, Pause), 2 * 24999);
+}
+
+TEST(CachePolicy, ShrinksOnlyAfterAPause)
+{
+  CachePolicy policy;
+  for (int image = 0; image < 20; ++image)
+  {
+    policy.RecordImage(100);
+    EXPECT_EQ(policy.SlotsForNewImage(100000, Maximum, NoPause), 100000);
+  }
+  EXPECT_EQ(policy.SlotsForNewImage(100000, Maximum, Pause), 16384);
 }
 
 TEST(CachePolicy, AQuarterInUseIsEnoughToStay)
@@ -121,20 +156,20 @@ TEST(CachePolicy, AQuarterInUseIsEnoughToStay)
   {
     policy.RecordImage(image == 0 ? 25000 : 100);
   }
-  EXPECT_EQ(policy.SlotsForNewImage(100000), 100000);
+  EXPECT_EQ(policy.SlotsForNewImage(100000, Maximum, Pause), 100000);
   policy.RecordImage(100); // the image that used a quarter is no longer among the last eight
-  EXPECT_EQ(policy.SlotsForNewImage(100000), 16384);
+  EXPECT_EQ(policy.SlotsForNewImage(100000, Maximum, Pause), 16384);
 }
 
-TEST(CachePolicy, DoesNotGrowForANewImage)
+TEST(CachePolicy, ASmallCacheDoesNotShrink)
 {
   CachePolicy policy;
   for (int image = 0; image < 8; ++image)
   {
     policy.RecordImage(0);
   }
-  EXPECT_EQ(policy.SlotsForNewImage(3000), 3000);
-  EXPECT_EQ(policy.SlotsForNewImage(16385), 16384);
+  EXPECT_EQ(policy.SlotsForNewImage(3000, Maximum, Pause), 3000);
+  EXPECT_EQ(policy.SlotsForNewImage(16385, Maximum, Pause), 16384);
 }
 
 TEST(CachePolicy, ResetForgetsImages)
@@ -145,5 +180,5 @@ TEST(CachePolicy, ResetForgetsImages)
     policy.RecordImage(100);
   }
   policy.Reset();
-  EXPECT_EQ(policy.SlotsForNewImage(100000), 100000);
+  EXPECT_EQ(policy.SlotsForNewImage(100000, Maximum, Pause), 100000);
 }

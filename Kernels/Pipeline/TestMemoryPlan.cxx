@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <vector>
+
 namespace
 {
 constexpr std::int64_t MiB = 1LL << 20;
@@ -161,5 +164,113 @@ TEST(MemoryPlan, DoesNotDependOnTheCacheAtHand)
     EXPECT_EQ(plan.Cached, expected.Cached);
     EXPECT_EQ(plan.MaximumSlots, expected.MaximumSlots);
     EXPECT_EQ(plan.LeastBudget, expected.LeastBudget);
+  }
+}
+
+namespace
+{
+// A GPU whose buffers hold 2 GiB less a byte, and are committed by pages of 64 KiB.
+DeviceLimits SparseLimits()
+{
+  DeviceLimits limits = Limits();
+  limits.LargestBuffer = 2 * GiB - 1;
+  limits.SparseBuffers = true;
+  limits.SparsePage = 65536;
+  return limits;
+}
+
+// Scenes of every kind of slot.
+std::vector<SceneNeeds> KindsOfSlots()
+{
+  std::vector<SceneNeeds> scenes;
+  for (const bool colored : { false, true })
+  {
+    for (const bool hidden : { false, true })
+    {
+      scenes.push_back(Scene(1024));
+      scenes.back().Colored = colored;
+      scenes.back().HiddenCells = hidden;
+      scenes.back().HiddenWords = hidden ? 30 : 0;
+    }
+  }
+  return scenes;
+}
+}
+
+TEST(MemoryPlan, AddressesAreReservedOnlyWhereThatHelps)
+{
+  EXPECT_EQ(WithReservation(Limits(), Scene(1024)).SlotCapacity, 0);
+  EXPECT_EQ(WithReservation(SparseLimits(), Scene(512)).SlotCapacity, 0); // 512 MiB of samples
+  EXPECT_GT(WithReservation(SparseLimits(), Scene(516)).SlotCapacity, 0);
+}
+
+TEST(MemoryPlan, ReservedPartsLieSideBySide)
+{
+  for (const SceneNeeds& scene : KindsOfSlots())
+  {
+    const SceneNeeds reserved = WithReservation(SparseLimits(), scene);
+    const BufferInfo& values = PipelineBuffers()[static_cast<std::size_t>(Buffer::CacheValues)];
+    EXPECT_LE(values.ReservedBytes(reserved), SparseLimits().LargestBuffer);
+    for (const std::int64_t slots : { std::int64_t(2048), reserved.SlotCapacity })
+    {
+      std::int64_t end = 0;
+      for (const ByteRange& part : values.Parts(WithCache(reserved, slots)))
+      {
+        EXPECT_GE(part.Begin, end);
+        EXPECT_EQ(part.Begin % 65536, 0);
+        EXPECT_EQ(part.Bytes % 65536, 0);
+        end = part.Begin + part.Bytes;
+      }
+      EXPECT_LE(end, values.ReservedBytes(reserved));
+    }
+  }
+}
+
+TEST(MemoryPlan, ReservedMemoryCountsAsItIsCommitted)
+{
+  const SceneNeeds reserved = WithReservation(SparseLimits(), Scene(1024));
+  const std::int64_t few = BytesOf(Lifetime::Cache, WithCache(reserved, 2048));
+  EXPECT_GE(few, BytesOf(Lifetime::Cache, WithCache(Scene(1024), 2048)));
+  EXPECT_LE(few, BytesOf(Lifetime::Cache, WithCache(Scene(1024), 2048)) + 4 * 65536);
+  for (const std::int64_t slots : { 2048, 4097, 100000, 1000000 })
+  {
+    const std::int64_t budget = BytesBesideStream(WithCache(reserved, slots));
+    const MemoryPlan plan = PlanMemory(SparseLimits(), WithBudget(budget), reserved);
+    EXPECT_GE(plan.MaximumSlots, slots);
+    EXPECT_LE(BytesBesideStream(WithCache(reserved, plan.MaximumSlots)), budget);
+  }
+}
+
+TEST(MemoryPlan, ReservedCacheGrowsInPlaceToTheMaximum)
+{
+  const SceneNeeds reserved = WithReservation(SparseLimits(), Scene(1024));
+  const MemoryPlan plan = PlanMemory(SparseLimits(), WithBudget(GiB), reserved);
+  const CacheGrowth some = PlanGrowth(plan, WithCache(reserved, 2048), 5000);
+  EXPECT_TRUE(some.Keeps);
+  EXPECT_EQ(some.Slots, 5000);
+  const CacheGrowth all = PlanGrowth(plan, WithCache(reserved, 1000000), 100000000);
+  EXPECT_TRUE(all.Keeps);
+  EXPECT_EQ(all.Slots, plan.MaximumSlots);
+}
+
+TEST(MemoryPlan, OtherCacheGrowsWhileTheBudgetHasRoomForACopy)
+{
+  for (const SceneNeeds& scene : KindsOfSlots())
+  {
+    const MemoryPlan plan = PlanMemory(Limits(), WithBudget(GiB), scene);
+    const std::int64_t half = plan.MaximumSlots / 2;
+    const CacheGrowth free = PlanGrowth(plan, WithCache(scene, 16384), 65536);
+    EXPECT_TRUE(free.Keeps);
+    EXPECT_EQ(free.Slots, 65536);
+    // the copied samples stay for a moment: the cache grows less than it is to
+    const CacheGrowth less = PlanGrowth(plan, WithCache(scene, half / 2), plan.MaximumSlots);
+    EXPECT_TRUE(less.Keeps);
+    EXPECT_GT(less.Slots, half);
+    EXPECT_LE(
+      BytesBesideStream(WithCache(scene, less.Slots)) + BytesPerSlot(scene) * (half / 2), GiB);
+    // no room for both: anew, as large as can be
+    const CacheGrowth anew = PlanGrowth(plan, WithCache(scene, half), plan.MaximumSlots);
+    EXPECT_FALSE(anew.Keeps);
+    EXPECT_EQ(anew.Slots, plan.MaximumSlots);
   }
 }

@@ -5,7 +5,9 @@
 #include "Shaders/Glsl.h"
 #include "Shaders/HitSections.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <numeric>
 
 namespace
 {
@@ -23,6 +25,30 @@ std::int64_t BytesOfMacrocell(const SceneNeeds& needs)
 constexpr std::int64_t BytesOfBlock = glsl::SAMPLES_PER_BLOCK * sizeof(float);
 // Bytes that tell which cells of a block are hidden: a row of the buffer of decoded samples.
 constexpr std::int64_t BytesOfHiddenRow = glsl::BLOCK_SIDE * sizeof(float);
+
+// What the parts of the buffer of decoded samples have for a slot, in the order of SlotLayout.glsl.
+std::vector<std::int64_t> BytesInParts(const SceneNeeds& needs)
+{
+  std::vector<std::int64_t> bytes(needs.Colored ? 2 : 1, BytesOfBlock);
+  if (needs.HiddenCells)
+  {
+    bytes.push_back(BytesOfHiddenRow);
+  }
+  return bytes;
+}
+
+std::int64_t RoundUp(std::int64_t bytes, std::int64_t multiple)
+{
+  return (bytes + multiple - 1) / multiple * multiple;
+}
+
+SceneNeeds AtCapacity(const SceneNeeds& needs)
+{
+  SceneNeeds full = needs;
+  full.Slots = needs.SlotCapacity;
+  full.MapPages = needs.MapPageCapacity;
+  return full;
+}
 }
 
 const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers()
@@ -86,7 +112,51 @@ const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers()
 
 std::int64_t BytesPerSlot(const SceneNeeds& needs)
 {
-  return (needs.Colored ? 2 : 1) * BytesOfBlock + (needs.HiddenCells ? BytesOfHiddenRow : 0);
+  const std::vector<std::int64_t> parts = BytesInParts(needs);
+  return std::accumulate(parts.begin(), parts.end(), std::int64_t(0));
+}
+
+std::int64_t LeastBytesInPart(const SceneNeeds& needs)
+{
+  const std::vector<std::int64_t> parts = BytesInParts(needs);
+  return *std::min_element(parts.begin(), parts.end());
+}
+
+std::int64_t BufferInfo::Bytes(const SceneNeeds& needs) const
+{
+  std::int64_t bytes = 0;
+  for (const ByteRange& part : this->Parts(needs))
+  {
+    bytes += part.Bytes;
+  }
+  return bytes;
+}
+
+std::int64_t BufferInfo::ReservedBytes(const SceneNeeds& needs) const
+{
+  return RoundUp(this->SizeInBytes(AtCapacity(needs)), needs.CommitBytes);
+}
+
+std::vector<ByteRange> BufferInfo::Parts(const SceneNeeds& needs) const
+{
+  if (!this->IsNeeded(needs))
+  {
+    return {};
+  }
+  const std::int64_t multiple = this->IsReserved(needs) ? needs.CommitBytes : 1;
+  if (this->Id != Buffer::CacheValues)
+  {
+    return { { 0, RoundUp(this->SizeInBytes(needs), multiple) } };
+  }
+  const std::int64_t capacity = this->IsReserved(needs) ? needs.SlotCapacity : needs.Slots;
+  std::vector<ByteRange> parts;
+  std::int64_t begin = 0;
+  for (const std::int64_t bytes : BytesInParts(needs))
+  {
+    parts.push_back({ begin, RoundUp(bytes * needs.Slots, multiple) });
+    begin += bytes * capacity;
+  }
+  return parts;
 }
 
 std::int64_t BytesOf(Lifetime lifetime, const SceneNeeds& needs)

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 enum class Buffer
 {
@@ -32,13 +33,21 @@ enum class Buffer
 };
 constexpr int NumberOfBuffers = static_cast<int>(Buffer::NumberOfBuffers);
 
-/// When a buffer's size changes, and with it its contents are void.
+/// When a buffer's size changes, and with it its contents are void. Those of the cache keep them
+/// when they grow.
 enum class Lifetime
 {
   Pipeline,
   Volume,
   Image,
   Cache
+};
+
+/// A part of a buffer.
+struct ByteRange
+{
+  std::int64_t Begin = 0;
+  std::int64_t Bytes = 0;
 };
 
 /// How a stage, or the host, uses a buffer.
@@ -71,11 +80,18 @@ struct BufferInfo
   const char* Purpose;
 
   bool IsNeeded(const SceneNeeds& needs) const { return this->Needed.Holds(needs); }
-  /// 0 if the scene does not need the buffer.
-  std::int64_t Bytes(const SceneNeeds& needs) const
+  /// What the GPU holds; 0 if the scene does not need the buffer.
+  std::int64_t Bytes(const SceneNeeds& needs) const;
+  /// Are addresses reserved for all that the buffer may ever hold, of which a part is committed?
+  bool IsReserved(const SceneNeeds& needs) const
   {
-    return this->IsNeeded(needs) ? this->SizeInBytes(needs) : 0;
+    return this->Life == Lifetime::Cache && needs.SlotCapacity > 0;
   }
+  /// Bytes that have an address.
+  std::int64_t ReservedBytes(const SceneNeeds& needs) const;
+  /// The parts that hold something: each grows at its end. In a reserved buffer they are whole
+  /// multiples of what is committed at a time.
+  std::vector<ByteRange> Parts(const SceneNeeds& needs) const;
 };
 
 /// The table itself, in the order of the enumeration. The stream's size is the stream's.
@@ -83,6 +99,8 @@ const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers();
 
 /// Bytes of a cache slot: of its decoded samples, and what is hidden.
 std::int64_t BytesPerSlot(const SceneNeeds& needs);
+/// The least of these that a part of CacheValues has for a slot: see SlotLayout.glsl.
+std::int64_t LeastBytesInPart(const SceneNeeds& needs);
 
 /// Bytes of all buffers of a lifetime.
 std::int64_t BytesOf(Lifetime lifetime, const SceneNeeds& needs);

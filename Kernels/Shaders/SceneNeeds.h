@@ -15,6 +15,13 @@ struct BufferSizes
   std::int64_t Slots = 0;       ///< blocks that the cache holds, or all blocks of the volume
   std::int64_t MapPages = 0;    ///< of the block map; 0 without a cache
   std::int64_t HiddenWords = 0; ///< that tell which cells are hidden
+  ///@{ Slots and map pages that the cache's buffers have addresses for, where these are reserved
+  /// and
+  /// memory is committed as the cache grows, in multiples of so many bytes. 0: no more than it has.
+  std::int64_t SlotCapacity = 0;
+  std::int64_t MapPageCapacity = 0;
+  std::int64_t CommitBytes = 1;
+  ///@}
 };
 
 /// What the scene has. Each combination has its own variants of the stages.

@@ -12,8 +12,8 @@ const std::vector<StageInfo>& PipelineStages()
   using namespace Conditions;
   using B = Buffer;
   constexpr Access R = Access::Read, W = Access::Write, RW = Access::ReadWrite;
-  constexpr Moment Volume = Moment::Volume, Cache = Moment::Cache, Pass = Moment::Pass,
-                   Drawing = Moment::Drawing;
+  constexpr Moment Volume = Moment::Volume, Cache = Moment::Cache, Growth = Moment::Growth,
+                   Pass = Moment::Pass, Drawing = Moment::Drawing;
   constexpr Urgency AtOnce = Urgency::AtOnce, Soon = Urgency::Soon, OnDemand = Urgency::OnDemand;
   // clang-format off
   static const std::vector<StageInfo> stages = {
@@ -31,6 +31,14 @@ const std::vector<StageInfo>& PipelineStages()
       AtOnce, OneGroup,
       { { Cache, Cached } },
       { { B::Control, W }, { B::Macrocells, W }, { B::CacheMap, W }, { B::CacheFreeSlots, W } } },
+    { Stage::CacheUnwind, "CacheUnwind", "Cache/CacheUnwind.comp", 256,
+      Soon, OneGroup,
+      { { Growth, Cached } },
+      { { B::Control, RW }, { B::CacheFreeSlots, RW } } },
+    { Stage::CacheGrow, "CacheGrow", "Cache/CacheGrow.comp", 256,
+      Soon, OneGroup,
+      { { Growth, Cached } },
+      { { B::Control, RW }, { B::CacheMap, RW }, { B::CacheFreeSlots, W } } },
     { Stage::CacheAges, "CacheAges", "Cache/CacheAges.comp", glsl::PASS_AGES,
       Soon, offsetof(glsl::Control, EvictGroups),
       { { Pass, Evicting } },

@@ -16,6 +16,8 @@ enum class Stage
   BlockRanges,
   PlanPass,
   CacheReset,
+  CacheUnwind,
+  CacheGrow,
   CacheAges,
   CacheEvict,
   CastRays,
@@ -35,6 +37,7 @@ enum class Moment
 {
   Volume, ///< once, when a volume is loaded
   Cache,  ///< when the cache is made
+  Growth, ///< when it grows
   Pass,   ///< in every pass
   Drawing ///< into the window
 };

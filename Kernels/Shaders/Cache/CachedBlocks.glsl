@@ -7,7 +7,7 @@
 
 uint NumberOfSlots()
 {
-  return cache.Slots;
+  return cache.SlotCapacity;
 }
 
 // NONE if the block is not in the cache.

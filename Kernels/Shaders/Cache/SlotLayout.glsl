@@ -1,6 +1,7 @@
 // Where things lie in the buffer of decoded samples: 64 samples a slot, x fastest; behind all slots
 // likewise those of the volume that gives the colours; behind those, where cells are hidden, four
-// words a slot, of which two are the bits of its block's cells.
+// words a slot, of which two are the bits of its block's cells. All slots are those that the buffer
+// is laid out for: it may have memory for less.
 
 #include "Shared/Buffers.glsl"
 #include BLOCK_ACCESS

@@ -50,9 +50,9 @@ STORAGE_BLOCK(Control, BUFFER_CONTROL)
   uint DeniedRequestsBefore; // of the pass before
   uint ContinuingRays;       // the last pass's translucent hits, behind which rays may go on
   uint NextContinuingRays;   // rays that go on behind hits of this pass
+  uint KeptSlotsBegin;       // while the cache grows: FreeSlotsBegin of the ring, unwound,
+  uint KeptFreeSlots;        // and the free slots before
   uint Padding0;
-  uint Padding1;
-  uint Padding2;
   Dispatch CastGroups;
   Dispatch StragglerGroups; // of CastStragglers instead, when few rays are left
   Dispatch FinishGroups;

@@ -129,8 +129,8 @@ UNIFORM_BLOCK(Cache, CACHE_BINDING)
   uint CannotGrow;
   uint SpeculationLimit;   // blocks that a ray may ask for in a pass
   uint PixelsPerStraggler; // so few rays, or fewer, get a work group each; 0: never
-  uint Padding0;
-  uint Padding1;
-  uint Padding2;
+  uint SlotCapacity;       // slots that the buffer of samples is laid out for, at least Slots
+  uint FirstNewSlot;       // of those, and
+  uint FirstNewPage;       // map pages, that the cache has grown by last
 }
 INSTANCE(cache);

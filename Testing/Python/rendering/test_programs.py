@@ -11,7 +11,7 @@ from helpers.gl_hooks import Compiler
 from helpers.images import blobs, make_image, noise, reference_volume
 from helpers.scenes import CACHED, Scene, least_budget, orbit
 
-SOON = {"CacheAges", "CacheEvict", "CastStragglers"}
+SOON = {"CacheAges", "CacheEvict", "CastStragglers", "CacheUnwind", "CacheGrow"}
 
 
 @pytest.fixture(scope="module")
