@@ -63,6 +63,7 @@ public:
   void Request(Urgency urgency);
   bool IsReady(Stage stage);
   bool IsReady(Urgency urgency);
+  bool CompilesInBackground() const { return this->Programs->CompilesInBackground(); }
   std::vector<ProgramTime> GetProgramTimes() const;
   ///@}
 

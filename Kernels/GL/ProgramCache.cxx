@@ -12,6 +12,7 @@ namespace
 {
 constexpr GLenum CompletionStatus = 0x91B1; // GL_COMPLETION_STATUS_KHR
 constexpr GLuint AllThreads = 0xFFFFFFFF;   // as many as the driver allows
+constexpr double LongestRequest = 50.0;     // milliseconds, where others do the work
 
 // Lets the driver compile in threads: some do so only if they are asked.
 void AllowCompilerThreads()
@@ -114,6 +115,7 @@ bool ProgramCache::IsReady(Stage stage, const SceneNeeds& needs)
   {
     return true;
   }
+  const Stopwatch stopwatch;
   Program& program = this->Find(stage, needs);
   if (!program.Complete)
   {
@@ -122,9 +124,11 @@ bool ProgramCache::IsReady(Stage stage, const SceneNeeds& needs)
     if (complete)
     {
       SetComplete(program);
+      // Mesa has the extension in common, but not every driver of it has the threads
+      this->InBackground = stopwatch.GetMilliseconds() < LongestRequest;
     }
   }
-  return program.Complete;
+  return program.Complete || !this->InBackground;
 }
 
 Status ProgramCache::Get(Stage stage, const SceneNeeds& needs, GLuint& name)

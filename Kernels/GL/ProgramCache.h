@@ -43,6 +43,8 @@ public:
   /// Has the driver compile stages of a scene, in this order, and returns at once. Without a
   /// compiler in the background it does nothing.
   void Request(const std::vector<Stage>& stages, const SceneNeeds& needs);
+  /// Does the driver compile in threads of its own? Some only say so.
+  bool CompilesInBackground() const { return this->InBackground; }
   /// Can the scene's stage run without a wait? It is requested if need be. Without a compiler in
   /// the background the answer is always yes, as nothing is won by putting the stage off.
   bool IsReady(Stage stage, const SceneNeeds& needs);

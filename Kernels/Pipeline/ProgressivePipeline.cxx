@@ -296,7 +296,8 @@ std::uint32_t ProgressivePipeline::ChoosePixelsPerStraggler()
   // a software renderer has no lanes to keep busy, and its work groups cost much
   const bool wanted = !this->Gpu->Gl.GetLimits().Software &&
     InfoOf(Stage::CastStragglers).IsNeeded(Moment::Pass, this->Needs);
-  return wanted && this->Gpu->IsReady(Stage::CastStragglers) ? PixelsPerStraggler : 0;
+  const bool mayCompile = this->Gpu->CompilesInBackground() || this->Shown;
+  return wanted && mayCompile && this->Gpu->IsReady(Stage::CastStragglers) ? PixelsPerStraggler : 0;
 }
 
 // Has the next pass planned with the stages that are compiled by now.
@@ -325,6 +326,7 @@ Status ProgressivePipeline::SetScene(
   this->UpdateNeeds(scene);
   this->Started = this->Started && !newImage && before.Pixels == this->Needs.Pixels &&
     before.GetBits() == this->Needs.GetBits();
+  this->Shown = this->Shown && before.GetBits() == this->Needs.GetBits();
   return this->MakeRoom(newImage);
 }
 
@@ -582,6 +584,12 @@ void ProgressivePipeline::EndImage()
   {
     this->Policy.RecordImage(this->Log.GetPasses().back().TouchedSlots);
   }
+}
+
+void ProgressivePipeline::Composite()
+{
+  this->Gpu->Draw(Stage::Composite);
+  this->Shown = true;
 }
 
 double ProgressivePipeline::GetCompletedFraction() const

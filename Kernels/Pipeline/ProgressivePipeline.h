@@ -72,7 +72,7 @@ public:
   double GetCompletedFraction() const;
 
   /// Draws the image with its depth into the current framebuffer and viewport.
-  void Composite() { this->Gpu->Draw(Stage::Composite); }
+  void Composite();
   /// Draws identifiers instead, for a vtkHardwareSelector; see Select.frag.
   void Select(const SelectedId& selected) { this->Gpu->Draw(Stage::Select, &selected); }
   /// What the rays have met so far.
@@ -144,6 +144,7 @@ private:
   PassLog Log;
   bool VolumeLoaded = false;
   bool VolumePrepared = false;
+  bool Shown = false; ///< a picture has been, of a scene that needs the same programs
   double UploadMilliseconds = 0.0;
   bool CacheToEmpty = false;
   bool Started = false;

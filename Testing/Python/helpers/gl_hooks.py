@@ -96,7 +96,7 @@ class Compiler:
     """
 
     def __init__(self):
-        self.held, self.linked = set(), []
+        self.held, self.linked, self._asked = set(), [], set()
         self._hooks = contextlib.ExitStack()
         self._renderer = ctypes.create_string_buffer(b"a GPU")
         self._extension = ctypes.create_string_buffer(b"GL_KHR_parallel_shader_compile")
@@ -124,12 +124,14 @@ class Compiler:
         return ctypes.addressof(self._extension) if index == 0 else original(name, index)
 
     def _link(self, original, program):
+        self._asked.discard(program)
         self.linked.append(program_label(program))
         original(program)
 
     def _ask(self, original, program, what, answer):
         if what == COMPLETION_STATUS:
-            answer[0] = program_label(program) not in self.held
+            answer[0] = program in self._asked and program_label(program) not in self.held
+            self._asked.add(program)
         else:
             original(program, what, answer)
 
