@@ -25,6 +25,16 @@ StageTimer::Timestamp StageTimer::Mark()
   return timestamp;
 }
 
+bool StageTimer::HasPassed(const Timestamp& timestamp)
+{
+  GLint available = 1;
+  if (timestamp.Query)
+  {
+    glGetQueryObjectiv(timestamp.Query, GL_QUERY_RESULT_AVAILABLE, &available);
+  }
+  return available != 0;
+}
+
 double StageTimer::Milliseconds(Timestamp& begin, Timestamp& end)
 {
   this->Await(begin);
@@ -83,7 +93,9 @@ void StageTimer::StartImage(const std::set<Stage>& kept)
 
 double StageTimer::GetPreparationMilliseconds()
 {
-  return this->Milliseconds(this->PreparationStart, this->PreparationEnd);
+  return HasPassed(this->PreparationEnd)
+    ? this->Milliseconds(this->PreparationStart, this->PreparationEnd)
+    : 0.0;
 }
 
 void StageTimer::EndPass()

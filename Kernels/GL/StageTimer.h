@@ -31,7 +31,7 @@ public:
   ///@{ Times what prepares a volume, apart from its images.
   void BeginPreparation() { this->PreparationStart = this->Mark(); }
   void EndPreparation() { this->PreparationEnd = this->Mark(); }
-  /// Waits for the GPU.
+  /// 0 until the GPU has come so far.
   double GetPreparationMilliseconds();
   ///@}
   /// Forgets all that has run.
@@ -56,6 +56,7 @@ private:
   };
 
   Timestamp Mark();
+  static bool HasPassed(const Timestamp& timestamp);
   double Milliseconds(Timestamp& begin, Timestamp& end);
   void Await(Timestamp& timestamp);
   void Recycle(Timestamp& timestamp);
