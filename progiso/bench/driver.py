@@ -62,6 +62,35 @@ class Frame:
 # ---- movements
 
 
+def _orbit(cameras: list[Any], isovalues: list[float], frames: int) -> list[Frame]:
+    """Move by two degrees a frame."""
+    return _led([turned(cameras[0], STEP * i) for i in range(frames + 1)], isovalues[0])
+
+
+def _dolly_in(cameras: list[Any], isovalues: list[float], frames: int) -> list[Frame]:
+    """Come nearer by the same factor in every frame, from where the orbit ended."""
+    return _dolly(turned(cameras[0], STEP * frames), 1.0, NEAREST, isovalues[0], frames)
+
+
+def _dolly_out(cameras: list[Any], isovalues: list[float], frames: int) -> list[Frame]:
+    """Go away by the same factor in every frame, from where the dolly in ended."""
+    return _dolly(turned(cameras[0], STEP * frames), NEAREST, FARTHEST, isovalues[0], frames)
+
+
+def _far_view(cameras: list[Any], isovalues: list[float], frames: int) -> list[Frame]:
+    """Orbit where the volume is small on the screen."""
+    far = _at_distance(cameras[0], FAR)
+    return _led([turned(far, STEP * i) for i in range(frames + 1)], isovalues[0])
+
+
+def _sweep(cameras: list[Any], isovalues: list[float], frames: int) -> list[Frame]:
+    """Go through the isovalues' range."""
+    low, high = min(isovalues), max(isovalues)
+    values = [low + (high - low) * i / frames for i in range(frames + 1)]
+    shown = [Frame(cameras[0], value) for value in values]
+    return [replace(shown[0], counted=False), *shown[1:]]
+
+
 def _next_view(cameras: list[Any], isovalues: list[float], frames: int) -> list[Frame]:
     """Jump around the volume, at every isovalue."""
     del frames
@@ -79,44 +108,16 @@ def _moved(cameras: list[Any], isovalues: list[float], frames: int) -> list[Fram
     return [frame for pair in pairs for frame in pair]
 
 
-def _orbit(cameras: list[Any], isovalues: list[float], frames: int) -> list[Frame]:
-    """Move by two degrees a frame."""
-    return _led([turned(cameras[0], STEP * i) for i in range(frames + 1)], isovalues[0])
-
-
-def _dolly_in(cameras: list[Any], isovalues: list[float], frames: int) -> list[Frame]:
-    """Come nearer by the same factor in every frame."""
-    return _dolly(cameras[0], 1.0, NEAREST, isovalues[0], frames)
-
-
-def _dolly_out(cameras: list[Any], isovalues: list[float], frames: int) -> list[Frame]:
-    """Go away by the same factor in every frame."""
-    return _dolly(cameras[0], NEAREST, FARTHEST, isovalues[0], frames)
-
-
-def _far_view(cameras: list[Any], isovalues: list[float], frames: int) -> list[Frame]:
-    """Orbit where the volume is small on the screen."""
-    far = _at_distance(cameras[0], FAR)
-    return _led([turned(far, STEP * i) for i in range(frames + 1)], isovalues[0])
-
-
-def _sweep(cameras: list[Any], isovalues: list[float], frames: int) -> list[Frame]:
-    """Go through the isovalues' range."""
-    low, high = min(isovalues), max(isovalues)
-    values = [low + (high - low) * i / frames for i in range(frames + 1)]
-    shown = [Frame(cameras[0], value) for value in values]
-    return [replace(shown[0], counted=False), *shown[1:]]
-
-
-#: In the order in which they are made, each from where the one before has left the cache.
+#: In the order in which they are made, each with the cache that the one before has left: the
+#: fly-through first, so that all growth of the cache after the first image falls into it.
 MOVEMENTS = {
-    "next view": _next_view,
-    "moved by 2°": _moved,
     "orbit": _orbit,
     "dolly in": _dolly_in,
     "dolly out": _dolly_out,
     "far view": _far_view,
     "isovalue sweep": _sweep,
+    "next view": _next_view,
+    "moved by 2°": _moved,
 }
 
 
@@ -236,7 +237,7 @@ def interactive(
     use_all_cores()
     way = _WAYS[peer](path, isovalues[0], (size[0], size[1]))
     cameras = [progiso.orbit_camera(way.image, i, positions) for i in range(positions)]
-    first = way.view.warm_up(cameras[-1])
+    first = way.view.warm_up(cameras[0])
     movements = {}
     for name, frames_of in MOVEMENTS.items():
         count = min(frames, MESH_SWEEP) if peer == "mesh" and name == "isovalue sweep" else frames

@@ -347,8 +347,9 @@ def movement_against_baseline(
     ours, theirs : dict
         ``time`` and ``cpu_ms`` of the frames, see `interactive`.
     """
-    kind = machine_kind(machine)
+    kind, timed = machine_kind(machine), True
     if kind == SOFTWARE and field.startswith(FASTER_WITHOUT_GPU) and movement == "next view":
+        timed = False  # others hardly change the processor's time
         ratio, what, limit = ours["cpu_ms"] / theirs["cpu_ms"], "CPU time", CPU_AGAINST_BASELINE
     elif kind == GPU and tuple(size) == HD:
         (ratio,) = _ratios(ours["time"], theirs["time"], "median")
@@ -359,7 +360,8 @@ def movement_against_baseline(
     else:
         return None
     goal = f"≤ {number(limit)} × the baseline's {what}"
-    return Verdict(f"{movement}, against the baseline", f"{number(ratio)} ×", goal, ratio <= limit)
+    what = f"{movement}, against the baseline"
+    return Verdict(what, f"{number(ratio)} ×", goal, ratio <= limit, timed)
 
 
 def no_hitch(machine: dict[str, Any], movement: str, ours: dict[str, Any]) -> Verdict | None:

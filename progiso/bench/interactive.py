@@ -1,9 +1,9 @@
 """Measure the frames of a fly-through: ProgIso, an earlier commit, VTK's mapper and FlyingEdges.
 
 Every way to an image runs in a process of its own, see `driver`, where the movements follow each
-other: views from all around at every isovalue, moves by two degrees from views with an empty cache,
-an orbit by two degrees a frame, a dolly in and out, an orbit far away, and a sweep through the
-isovalues. Every frame is complete. A process that compiles shaders draws slowly for some seconds:
+other: an orbit by two degrees a frame, a dolly in and out, an orbit far away, a sweep through the
+isovalues, views from all around at every isovalue, and moves by two degrees from views with an
+empty cache. Every frame is complete. A process that compiles shaders draws slowly for some seconds:
 another one, which is not counted, fills the driver's cache before. This commit and the earlier one
 take turns.
 """

@@ -660,11 +660,11 @@ def _interactive(report: _Report, records: list[dict[str, Any]]) -> list[str]:
         "",
         "Milliseconds of complete images: median / 95 % / largest. Each way to an image runs in a "
         "process of its own, after another one has filled the driver's cache of shaders, and makes "
-        "the movements in this order; VTK's ways show the decompressed volume. *Next view*: from "
-        "all around, at each isovalue. *Moved by 2°*: after an image for which the cache of blocks "
-        "was emptied. *Orbit*: by 2° a frame. *Dolly*: to half the distance, then to four times "
-        "it. *Far view*: an orbit at eight times it. FlyingEdges extracts anew where the isovalue "
-        "changes.",
+        "the movements in this order; VTK's ways show the decompressed volume. *Orbit*: by 2° a "
+        "frame, from where the first image was seen. *Dolly*: to half the distance, then to four "
+        "times it. *Far view*: an orbit at eight times it. *Next view*: from all around, at each "
+        "isovalue. *Moved by 2°*: after an image for which the cache of blocks was emptied. "
+        "FlyingEdges extracts anew where the isovalue changes.",
         "",
     ]
     for record in records:

@@ -77,6 +77,7 @@ def test_dollies_follow_each_other():
     assert distances[1][0] == pytest.approx(driver.NEAREST)
     assert distances[1][-1] == pytest.approx(driver.FARTHEST)
     assert np.linalg.norm(offset(frames_of("far view")[0])) == pytest.approx(driver.FAR * first)
+    assert frames_of("orbit")[-1].camera == near[0].camera and near[-1].camera == far[0].camera
     for part in distances:
         steps = np.divide(part[1:], part[:-1])
         assert steps == pytest.approx(steps[0])
