@@ -199,13 +199,26 @@ void vtkProgressiveIsosurfaceMapper::Render(vtkRenderer* renderer, vtkVolume* vo
   this->UpdateStatistics();
   double fraction = this->GetCompletedFraction();
   this->InvokeEvent(vtkCommand::ProgressEvent, &fraction);
-  if (this->Impl->Window.Get() == window && !this->GetConverged() && this->MayRefineLater(window))
-  {
-    this->Impl->Timer.RequestRender(window);
-  }
   if (!window->IsCurrent())
   {
     window->MakeCurrent();
+  }
+  if (this->Impl->Window.Get() == window && this->MayRefineLater(window))
+  {
+    this->PrepareNextRender(window);
+  }
+}
+
+// In a window that someone watches: goes on with the image, or uses the time.
+void vtkProgressiveIsosurfaceMapper::PrepareNextRender(vtkOpenGLRenderWindow* window)
+{
+  if (this->GetConverged())
+  {
+    this->Impl->Pipeline.RequestForClicks();
+  }
+  else
+  {
+    this->Impl->Timer.RequestRender(window);
   }
 }
 

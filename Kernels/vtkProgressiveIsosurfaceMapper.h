@@ -320,6 +320,7 @@ private:
   bool UpdateScene(vtkRenderer* renderer, vtkVolume* volume);
   bool UpdatePipeline(bool newImage, bool mayWait);
   bool Refine(vtkOpenGLRenderWindow* window);
+  void PrepareNextRender(vtkOpenGLRenderWindow* window);
   bool MayRefineLater(vtkOpenGLRenderWindow* window);
   void Select(vtkHardwareSelector* selector);
   bool Succeeds(const Status& status);

@@ -69,9 +69,9 @@ void Device::SetNeeds(const SceneNeeds& needs)
   this->Timer.SetDetailed(needs.Detailed);
 }
 
-void Device::Request(Urgency urgency)
+void Device::Request(Urgency urgency, const SceneNeeds& needs)
 {
-  this->Programs->Request(ProgramsOf(urgency, this->Needs), this->Needs);
+  this->Programs->Request(ProgramsOf(urgency, needs), needs);
 }
 
 bool Device::IsReady(Stage stage)

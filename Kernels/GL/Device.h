@@ -59,8 +59,9 @@ public:
   /// Chooses the variants of the stages by what the scene needs.
   void SetNeeds(const SceneNeeds& needs);
 
-  ///@{ The programs of these variants: see ProgramCache.
-  void Request(Urgency urgency);
+  /// Has the programs of a scene compiled in the background: see ProgramCache.
+  void Request(Urgency urgency, const SceneNeeds& needs);
+  ///@{ The programs of the chosen variants.
   bool IsReady(Stage stage);
   bool IsReady(Urgency urgency);
   bool CompilesInBackground() const { return this->Programs->CompilesInBackground(); }

@@ -409,8 +409,8 @@ void ProgressivePipeline::FreeForPlan(bool reload)
   }
   this->Gpu->Buffers.Trim(this->Needs);
   this->Gpu->SetNeeds(this->Needs);
-  this->Gpu->Request(Urgency::AtOnce); // they compile while the volume is uploaded
-  this->Gpu->Request(Urgency::Soon);
+  this->Gpu->Request(Urgency::AtOnce, this->Needs); // they compile while the volume is uploaded
+  this->Gpu->Request(Urgency::Soon, this->Needs);
   this->UploadCacheBlock();
 }
 
@@ -534,7 +534,6 @@ void ProgressivePipeline::RunPasses(int maximum, bool eager, const std::function
     if (this->Needs.IsSinglePass())
     {
       this->Log.AssumeComplete();
-      this->Gpu->Request(Urgency::OnDemand);
       return;
     }
     this->AwaitPass();
@@ -579,10 +578,22 @@ void ProgressivePipeline::EndImage()
   this->Gpu->Snapshots.Clear(); // those of passes that were not needed
   this->Log.EndImage();
   this->SinceImage = Stopwatch();
-  this->Gpu->Request(Urgency::OnDemand); // there is time now
   if (!this->Log.GetPasses().empty())
   {
     this->Policy.RecordImage(this->Log.GetPasses().back().TouchedSlots);
+  }
+}
+
+// A driver without threads of its own compiles nothing here.
+void ProgressivePipeline::RequestForClicks()
+{
+  this->Gpu->Request(Urgency::OnDemand, this->Needs);
+  for (const auto feature :
+    { &SceneNeeds::SeveralIsovalues, &SceneNeeds::Translucent, &SceneNeeds::Clipped })
+  {
+    SceneNeeds next = this->Needs;
+    next.*feature = true;
+    this->Gpu->Request(Urgency::AtOnce, next);
   }
 }
 

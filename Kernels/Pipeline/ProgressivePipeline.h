@@ -71,6 +71,9 @@ public:
   bool GetConverged() const { return this->Started && this->Log.GetRemainingRays() == 0; }
   double GetCompletedFraction() const;
 
+  /// Has the driver compile what a click on the complete image may need next: stages on demand, and
+  /// those of the scene with a second isovalue, translucent, or clipped.
+  void RequestForClicks();
   /// Draws the image with its depth into the current framebuffer and viewport.
   void Composite();
   /// Draws identifiers instead, for a vtkHardwareSelector; see Select.frag.
