@@ -116,6 +116,7 @@ void Context::AskLimits()
   this->Limits.Software = IsSoftwareRenderer();
   this->Limits.SparseBuffers = OffersFastSparseBuffers(offered);
   this->Limits.SparsePage = this->Limits.SparseBuffers ? AskSparsePage() : 0;
+  this->Limits.PersistentMapping = offered.count("GL_ARB_buffer_storage") > 0 && glBufferStorage;
   // llvmpipe offers it, too, but compiles a stage where it first runs
   this->Limits.BackgroundCompiler =
     !this->Limits.Software && offered.count("GL_KHR_parallel_shader_compile") > 0;

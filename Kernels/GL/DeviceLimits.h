@@ -13,6 +13,7 @@ struct DeviceLimits
   bool Software = false;           ///< no GPU: Mesa's llvmpipe
   bool SparseBuffers = false;      ///< buffers may be committed page by page, and large ones should
   std::int64_t SparsePage = 0;     ///< bytes of such a page
+  bool PersistentMapping = false;  ///< the CPU may see a buffer while the GPU writes it
   bool BackgroundCompiler = false; ///< the driver compiles in threads of its own, and tells when
 };
 

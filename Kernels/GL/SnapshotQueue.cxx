@@ -5,29 +5,52 @@
 #include "GL/Context.h"
 
 #include <cstddef>
+#include <cstring>
+
+void SnapshotQueue::MakeRing()
+{
+  const GLsizeiptr bytes = static_cast<GLsizeiptr>(MaximumBytes);
+  glGenBuffers(1, &this->Ring);
+  glBindBuffer(GL_COPY_WRITE_BUFFER, this->Ring);
+  if (this->Gl.GetLimits().PersistentMapping)
+  {
+    const GLbitfield access = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+    glBufferStorage(GL_COPY_WRITE_BUFFER, bytes, nullptr, access | GL_CLIENT_STORAGE_BIT);
+    this->Mapped =
+      static_cast<const char*>(glMapBufferRange(GL_COPY_WRITE_BUFFER, 0, bytes, access));
+  }
+  else
+  {
+    glBufferData(GL_COPY_WRITE_BUFFER, bytes, nullptr, GL_STREAM_READ);
+  }
+  glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
+  this->Gl.CheckMemory();
+}
+
+// The GPU copies in order: a place whose snapshot was dropped can be taken again at once.
+GLintptr SnapshotQueue::TakePlace()
+{
+  if (!this->Ring)
+  {
+    this->MakeRing();
+  }
+  const int place = this->Next;
+  this->Next = (this->Next + 1) % MaximumSnapshots;
+  return static_cast<GLintptr>(place * sizeof(Snapshot));
+}
 
 void SnapshotQueue::Request(GLuint control, GLuint passStatistics)
 {
   Copy copy;
-  if (this->SpareBuffers.empty())
-  {
-    glGenBuffers(1, &copy.Buffer);
-    glBindBuffer(GL_COPY_WRITE_BUFFER, copy.Buffer);
-    glBufferData(GL_COPY_WRITE_BUFFER, sizeof(Snapshot), nullptr, GL_STREAM_READ);
-    this->Gl.CheckMemory();
-  }
-  else
-  {
-    copy.Buffer = this->SpareBuffers.back();
-    this->SpareBuffers.pop_back();
-    glBindBuffer(GL_COPY_WRITE_BUFFER, copy.Buffer);
-  }
+  copy.Place = this->TakePlace();
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  glBindBuffer(GL_COPY_WRITE_BUFFER, this->Ring);
   glBindBuffer(GL_COPY_READ_BUFFER, control);
-  glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, sizeof(Snapshot::Control));
+  glCopyBufferSubData(
+    GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, copy.Place, sizeof(Snapshot::Control));
   glBindBuffer(GL_COPY_READ_BUFFER, passStatistics);
-  glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, offsetof(Snapshot, Records),
-    sizeof(Snapshot::Records));
+  glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0,
+    copy.Place + static_cast<GLintptr>(offsetof(Snapshot, Records)), sizeof(Snapshot::Records));
   glBindBuffer(GL_COPY_READ_BUFFER, 0);
   glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
   copy.Fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
@@ -50,11 +73,23 @@ Snapshot SnapshotQueue::Await()
     this->Gl.Fail(
       Status::Error("the GPU was lost: release the graphics resources and render again"));
   }
+  return this->ReadPlace(copy.Place);
+}
+
+// All bytes are zero after an error.
+Snapshot SnapshotQueue::ReadPlace(GLintptr place)
+{
   Snapshot snapshot = {};
-  glBindBuffer(GL_COPY_READ_BUFFER, copy.Buffer);
-  glGetBufferSubData(GL_COPY_READ_BUFFER, 0, sizeof(snapshot), &snapshot);
-  glBindBuffer(GL_COPY_READ_BUFFER, 0);
-  this->SpareBuffers.push_back(copy.Buffer);
+  if (this->Mapped)
+  {
+    std::memcpy(&snapshot, this->Mapped + place, sizeof(snapshot));
+  }
+  else
+  {
+    glBindBuffer(GL_COPY_READ_BUFFER, this->Ring);
+    glGetBufferSubData(GL_COPY_READ_BUFFER, place, sizeof(snapshot), &snapshot);
+    glBindBuffer(GL_COPY_READ_BUFFER, 0);
+  }
   return snapshot;
 }
 
@@ -63,7 +98,6 @@ void SnapshotQueue::Clear()
   for (const Copy& copy : this->Requested)
   {
     glDeleteSync(copy.Fence);
-    this->SpareBuffers.push_back(copy.Buffer);
   }
   this->Requested.clear();
 }
@@ -71,12 +105,7 @@ void SnapshotQueue::Clear()
 void SnapshotQueue::Release()
 {
   this->Clear();
-  glDeleteBuffers(static_cast<GLsizei>(this->SpareBuffers.size()), this->SpareBuffers.data());
-  this->SpareBuffers.clear();
-}
-
-std::int64_t SnapshotQueue::GetBytes() const
-{
-  const std::size_t buffers = this->Requested.size() + this->SpareBuffers.size();
-  return static_cast<std::int64_t>(buffers * sizeof(Snapshot));
+  glDeleteBuffers(1, &this->Ring); // ends its mapping, too
+  this->Ring = 0;
+  this->Mapped = nullptr;
 }

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
 // What the GPU tells the CPU after each pass. Snapshots arrive in the order in which they were
-// requested, and the GPU continues meanwhile.
+// requested, and the GPU continues meanwhile. They lie in a ring in one buffer, which the CPU sees
+// all the time where OpenGL can map it persistently.
 #ifndef SnapshotQueue_h
 #define SnapshotQueue_h
 
@@ -10,7 +11,6 @@
 
 #include <cstdint>
 #include <deque>
-#include <vector>
 
 class Context;
 
@@ -23,8 +23,10 @@ struct Snapshot
 class SnapshotQueue
 {
 public:
-  /// At once, with room to spare.
-  static constexpr std::int64_t MaximumBytes = 8 * static_cast<std::int64_t>(sizeof(Snapshot));
+  /// At once.
+  static constexpr int MaximumSnapshots = 8;
+  static constexpr std::int64_t MaximumBytes =
+    MaximumSnapshots * static_cast<std::int64_t>(sizeof(Snapshot));
 
   explicit SnapshotQueue(Context& context)
     : Gl(context)
@@ -39,18 +41,24 @@ public:
   void Clear();
   void Release();
 
-  std::int64_t GetBytes() const;
+  std::int64_t GetBytes() const { return this->Ring ? MaximumBytes : 0; }
 
 private:
   struct Copy
   {
-    GLuint Buffer = 0;
+    GLintptr Place = 0; ///< byte of the ring
     GLsync Fence = nullptr;
   };
 
+  void MakeRing();
+  GLintptr TakePlace();
+  Snapshot ReadPlace(GLintptr place);
+
   Context& Gl;
-  std::deque<Copy> Requested; ///< oldest first
-  std::vector<GLuint> SpareBuffers;
+  GLuint Ring = 0;
+  const char* Mapped = nullptr; ///< the ring, where it is mapped
+  int Next = 0;                 ///< place in the ring
+  std::deque<Copy> Requested;   ///< oldest first
 };
 
 #endif
