@@ -42,10 +42,16 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 // Users see the number in the header: it is SpeculationLimit's largest value and its default.
 static_assert(glsl::MAX_SPECULATION == 64, "SpeculationLimit follows the shaders' constant");
+
+namespace
+{
+constexpr double Unlimited = std::numeric_limits<double>::infinity(); // milliseconds
+}
 
 // What a mapper keeps from one render to the next; the mapper's methods join the parts.
 struct vtkProgressiveIsosurfaceMapper::Internals
@@ -387,10 +393,10 @@ bool vtkProgressiveIsosurfaceMapper::Refine(vtkOpenGLRenderWindow* window)
     return true; // programs are still being compiled
   }
   const Stopwatch stopwatch;
-  const bool interactive = this->MayRefineLater(window);
+  const double milliseconds = this->MayRefineLater(window) ? 1e3 * this->TimeAllowance : Unlimited;
   const auto stop = [&]()
   {
-    const bool late = interactive && stopwatch.GetMilliseconds() >= 1e3 * this->TimeAllowance;
+    const bool late = stopwatch.GetMilliseconds() >= milliseconds;
     const bool aborted = window->CheckAbortStatus() != 0; // asks observers, who may do anything
     if (!window->IsCurrent())
     {
@@ -401,7 +407,7 @@ bool vtkProgressiveIsosurfaceMapper::Refine(vtkOpenGLRenderWindow* window)
   const bool unfinished = !this->GetConverged();
   if (unfinished)
   {
-    impl.Pipeline.RunPasses(this->MaximumPassesPerRender, interactive, stop);
+    impl.Pipeline.RunPasses(this->MaximumPassesPerRender, milliseconds, stop);
   }
   if (impl.Window.Get() != window)
   {
@@ -436,7 +442,7 @@ void vtkProgressiveIsosurfaceMapper::Select(vtkHardwareSelector* selector)
   Internals& impl = *this->Impl;
   if (!this->GetConverged())
   {
-    impl.Pipeline.RunPasses(0, false, []() { return false; });
+    impl.Pipeline.RunPasses(0, Unlimited, []() { return false; });
   }
   if (this->Continues(impl.Pipeline.GetStatus()))
   {

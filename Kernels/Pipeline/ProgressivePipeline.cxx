@@ -14,7 +14,6 @@
 namespace
 {
 constexpr std::int64_t MaximumResetGroups = 4096; // each resets many slots where there are more
-constexpr int PassesAhead = 3; // submitted before the CPU knows whether they are needed
 // Where fewer than one pixel of so many has a live ray, each ray gets a work group.
 constexpr std::uint32_t PixelsPerStraggler = 32;
 constexpr std::chrono::milliseconds PollingInterval(1); // of programs that are being compiled
@@ -516,18 +515,20 @@ bool ProgressivePipeline::MayLeaveOut(Stage stage)
   }
 }
 
-// The GPU always has more work than the CPU knows of; passes that turn out not to be needed have no
-// work groups.
-void ProgressivePipeline::RunPasses(int maximum, bool eager, const std::function<bool()>& stop)
+// The GPU has more work than the CPU knows of; passes that turn out not to be needed have no work
+// groups.
+void ProgressivePipeline::RunPasses(
+  int maximum, double milliseconds, const std::function<bool()>& stop)
 {
-  const std::int64_t ahead =
-    eager || this->Gpu->Gl.GetLimits().Software || this->Needs.IsSinglePass() ? 1 : PassesAhead;
+  const Stopwatch stopwatch;
+  const std::int64_t known = this->Log.GetKnown();
   const std::int64_t last =
     maximum > 0 ? this->Log.GetSubmitted() + maximum : std::numeric_limits<std::int64_t>::max();
   bool more = this->Log.GetRemainingRays() > 0 && this->GetStatus();
   while (more || this->Log.AwaitsPasses())
   {
-    while (more && this->Log.GetSubmitted() < std::min(this->Log.GetKnown() + ahead, last))
+    const std::int64_t submit = this->PassesToSubmit(milliseconds - stopwatch.GetMilliseconds());
+    while (more && this->Log.GetSubmitted() < std::min(submit, last))
     {
       this->RunPass();
     }
@@ -541,12 +542,21 @@ void ProgressivePipeline::RunPasses(int maximum, bool eager, const std::function
     {
       return;
     }
+    this->Forecast.RecordTime(this->Log.GetKnown() - known, stopwatch.GetMilliseconds());
     more = more && !stop() && this->Log.GetSubmitted() < last;
     if (!this->Started) // `stop` has released everything
     {
       return;
     }
   }
+}
+
+// A software renderer runs its passes at once: none that may not be needed is submitted.
+std::int64_t ProgressivePipeline::PassesToSubmit(double millisecondsLeft) const
+{
+  const bool single = this->Gpu->Gl.GetLimits().Software || this->Needs.IsSinglePass();
+  const std::int64_t known = this->Log.GetKnown();
+  return single ? known + 1 : this->Forecast.PassesToSubmit(known, millisecondsLeft);
 }
 
 // Learns what the next of the submitted passes did.
@@ -581,6 +591,7 @@ void ProgressivePipeline::EndImage()
   if (!this->Log.GetPasses().empty())
   {
     this->Policy.RecordImage(this->Log.GetPasses().back().TouchedSlots);
+    this->Forecast.RecordImage(static_cast<std::int64_t>(this->Log.GetPasses().size()));
   }
 }
 

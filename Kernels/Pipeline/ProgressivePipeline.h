@@ -14,6 +14,7 @@
 #include "Pipeline/CachePolicy.h"
 #include "Pipeline/HitReadback.h"
 #include "Pipeline/MemoryPlan.h"
+#include "Pipeline/PassForecast.h"
 #include "Pipeline/PassLog.h"
 #include "Pipeline/PipelineScene.h"
 #include "Pipeline/PipelineSettings.h"
@@ -65,9 +66,9 @@ public:
   /// Is an image under way, or complete, that the scene lets go on?
   bool IsStarted() const { return this->Started; }
   /// Runs passes until the image is complete, `maximum` are done (0: no limit) or `stop`, which is
-  /// asked after each pass, says so. With `eager` no pass is submitted before the last one is known
-  /// to be needed.
-  void RunPasses(int maximum, bool eager, const std::function<bool()>& stop);
+  /// asked after each pass, says so. `milliseconds`: there is time for those passes that are
+  /// expected to take no longer.
+  void RunPasses(int maximum, double milliseconds, const std::function<bool()>& stop);
   bool GetConverged() const { return this->Started && this->Log.GetRemainingRays() == 0; }
   double GetCompletedFraction() const;
 
@@ -131,6 +132,7 @@ private:
   void RunPass();
   void RunStage(Stage stage);
   bool MayLeaveOut(Stage stage);
+  std::int64_t PassesToSubmit(double millisecondsLeft) const;
   void AwaitPass();
   void EndImage();
 
@@ -145,6 +147,7 @@ private:
   MemoryPlan Plan;
   CachePolicy Policy;
   PassLog Log;
+  PassForecast Forecast;
   bool VolumeLoaded = false;
   bool VolumePrepared = false;
   bool Shown = false; ///< a picture has been, of a scene that needs the same programs
