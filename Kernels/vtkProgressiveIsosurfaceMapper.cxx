@@ -202,7 +202,8 @@ void vtkProgressiveIsosurfaceMapper::Render(vtkRenderer* renderer, vtkVolume* vo
   {
     return;
   }
-  this->UpdateStatistics();
+  this->Statistics->SetSource(
+    [this, detailed = this->DetailedStatistics]() { return this->CollectFigures(detailed); });
   double fraction = this->GetCompletedFraction();
   this->InvokeEvent(vtkCommand::ProgressEvent, &fraction);
   if (!window->IsCurrent())
@@ -312,6 +313,7 @@ bool vtkProgressiveIsosurfaceMapper::BindWindow(vtkOpenGLRenderWindow* window)
   }
   if (impl.HandOverTime < impl.Inputs.GetTime())
   {
+    this->Statistics->SetSource(nullptr); // the last image's figures go
     impl.View.Forget();
     impl.Pipeline.SetVolume(impl.Inputs.Describe());
     impl.HandOverTime.Modified();
@@ -360,6 +362,7 @@ bool vtkProgressiveIsosurfaceMapper::UpdatePipeline(bool newImage, bool mayWait)
   {
     impl.Pipeline.SetPalette(impl.View.GetPalette());
   }
+  this->Statistics->SetSource(nullptr);
   PipelineSettings settings;
   settings.MemoryBudget = this->MemoryBudget;
   settings.LargestBuffer = this->LargestBuffer;
@@ -422,7 +425,6 @@ bool vtkProgressiveIsosurfaceMapper::Refine(vtkOpenGLRenderWindow* window)
   {
     return false;
   }
-  impl.Pipeline.CompleteStatistics();
   if (unfinished)
   {
     impl.TotalMilliseconds += stopwatch.GetMilliseconds();
@@ -451,14 +453,22 @@ void vtkProgressiveIsosurfaceMapper::Select(vtkHardwareSelector* selector)
   }
 }
 
-void vtkProgressiveIsosurfaceMapper::UpdateStatistics()
+// Waits for the GPU.
+ImageStatistics vtkProgressiveIsosurfaceMapper::CollectFigures(bool detailed)
 {
-  const std::int32_t* size = this->Impl->View.GetScene().View.ImageSize;
+  Internals& impl = *this->Impl;
+  if (impl.Window.Get()) // else it is going, and current
+  {
+    impl.Window.Get()->MakeCurrent();
+  }
+  impl.Pipeline.CompleteStatistics();
+  const std::int32_t* size = impl.View.GetScene().View.ImageSize;
   const std::int64_t pixels = static_cast<std::int64_t>(size[0]) * size[1];
-  ImageStatistics image = CollectStatistics(this->Impl->Pipeline, pixels, this->DetailedStatistics);
-  image.TotalMilliseconds = this->Impl->TotalMilliseconds;
-  image.InputMilliseconds = this->Impl->InputMilliseconds;
-  this->Statistics->SetImage(image);
+  ImageStatistics image = CollectStatistics(impl.Pipeline, pixels, detailed);
+  const double passes = image.Passes.empty() ? 0.0 : image.Passes.back().ElapsedMilliseconds;
+  image.TotalMilliseconds = std::max(impl.TotalMilliseconds, passes);
+  image.InputMilliseconds = impl.InputMilliseconds;
+  return image;
 }
 
 //------------------------------------------------------------------------------
@@ -502,10 +512,12 @@ void vtkProgressiveIsosurfaceMapper::ReleaseGraphics(vtkWindow* window)
   if (glWindow && impl.Window.HasContext(glWindow))
   {
     glWindow->MakeCurrent();
+    this->Statistics->Collect();
     impl.Pipeline.Release();
   }
   else if (impl.Window.IsBound())
   {
+    this->Statistics->SetSource(nullptr);
     impl.Pipeline = ProgressivePipeline(); // its objects are gone with their context
   }
   impl.Window.Unbind();

@@ -61,6 +61,7 @@ class vtkRenderWindow;
 class vtkScalarsToColors;
 class vtkVolumeProperty;
 struct ArrayChoice;
+struct ImageStatistics;
 
 class VTKPROGISOKERNELS_EXPORT vtkProgressiveIsosurfaceMapper : public vtkVolumeMapper
 {
@@ -326,7 +327,7 @@ private:
   bool Succeeds(const Status& status);
   bool Continues(const Status& pipelineStatus);
   void ReleaseGraphics(vtkWindow* window);
-  void UpdateStatistics();
+  ImageStatistics CollectFigures(bool detailed);
   bool HasImage();
 
   struct Internals;

@@ -23,6 +23,8 @@
  * Times are the GPU's (timer queries), except with Mesa's llvmpipe: its timer queries are wrong, so
  * times are wall clock there.
  *
+ * The GPU's figures are collected when one is asked for: that waits for the GPU.
+ *
  * @sa vtkProgressiveIsosurfaceMapper
  */
 #ifndef vtkProgressiveIsosurfaceStatistics_h
@@ -32,8 +34,9 @@
 #include "vtkObject.h"
 #include "vtkProgIsoKernelsModule.h" // for export macro
 
-#include <memory> // for the figures
-#include <string> // for the OpenGL implementation
+#include <functional> // for the source of the figures
+#include <memory>     // for the figures
+#include <string>     // for the OpenGL implementation
 
 class vtkTable;
 struct ImageStatistics;
@@ -56,7 +59,8 @@ public:
   ///@}
 
   /**
-   * Milliseconds spent in Render() on this image: passes and compositing, wall clock.
+   * Milliseconds that this image took: wall clock in Render(), passes and compositing, but at least
+   * what the GPU needed for the passes.
    */
   double GetTotalMilliseconds();
 
@@ -129,9 +133,14 @@ public:
   std::string GetGLDescription();
 
   /**
-   * For the mapper: show the figures of this image.
+   * For the mapper: the figures of the last image are those that `collect` returns. It is called
+   * when somebody asks for one of them, because it waits for the GPU. Null: they stay as they are.
    */
-  void SetImage(const ImageStatistics& image);
+  void SetSource(std::function<ImageStatistics()> collect);
+  /**
+   * For the mapper: collect the figures now, if that is still to be done.
+   */
+  void Collect();
 
 protected:
   vtkProgressiveIsosurfaceStatistics();
@@ -141,6 +150,10 @@ private:
   vtkProgressiveIsosurfaceStatistics(const vtkProgressiveIsosurfaceStatistics&) = delete;
   void operator=(const vtkProgressiveIsosurfaceStatistics&) = delete;
 
+  const ImageStatistics& GetImage();
+  void FillPassTable();
+
+  std::function<ImageStatistics()> Source; ///< null: the image's figures are there
   std::unique_ptr<ImageStatistics> Image;
   vtkNew<vtkTable> PassTable;
 };

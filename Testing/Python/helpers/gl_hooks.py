@@ -14,6 +14,7 @@ OUT_OF_MEMORY = 0x0505
 VENDOR = 0x1F00
 EXTENSIONS = 0x1F03
 SPARSE_BUFFER_PAGE_SIZE = 0x82F8
+SPARSE_STORAGE = 0x0400
 STORAGE_BUFFER_BINDING = 0x90D3
 R32UI, RED_INTEGER, UNSIGNED_INT = 0x8236, 0x8D94, 0x1405
 DYNAMIC_DRAW = 0x88E8
@@ -35,6 +36,7 @@ _PROTOTYPES = {
     "glClearBufferSubData": ctypes.CFUNCTYPE(
         None, _UINT, _UINT, _SIZE, _SIZE, _UINT, _UINT, _ADDRESS
     ),
+    "glClientWaitSync": ctypes.CFUNCTYPE(_UINT, _ADDRESS, _UINT, ctypes.c_uint64),
     "glCompileShader": ctypes.CFUNCTYPE(None, _UINT),
     "glDebugMessageCallback": ctypes.CFUNCTYPE(None, _ADDRESS, _ADDRESS),
     "glDebugMessageControl": ctypes.CFUNCTYPE(
@@ -53,6 +55,7 @@ _PROTOTYPES = {
     "glGetShaderSource": ctypes.CFUNCTYPE(None, _UINT, ctypes.c_int, _ADDRESS, ctypes.c_char_p),
     "glGetString": ctypes.CFUNCTYPE(_ADDRESS, _UINT),
     "glGetStringi": ctypes.CFUNCTYPE(_ADDRESS, _UINT, _UINT),
+    "glMapBufferRange": ctypes.CFUNCTYPE(_ADDRESS, _UINT, _SIZE, _SIZE, _UINT),
     "glShaderSource": ctypes.CFUNCTYPE(
         None, _UINT, ctypes.c_int, ctypes.POINTER(ctypes.c_char_p), _ADDRESS
     ),
@@ -157,6 +160,17 @@ class NoRoom:
         return original(target, size, data, usage)
 
 
+def without_extension(hidden):
+    """Have the context offer all extensions but one."""
+    other = ctypes.create_string_buffer(b"GL_none")
+
+    def name_of(original, what, i):
+        address = original(what, i)
+        return ctypes.addressof(other) if ctypes.string_at(address) == hidden else address
+
+    return intercepted("glGetStringi", name_of)
+
+
 class SparseBuffers:
     """Have the context offer sparse buffers, as NVIDIA's do, on top of plain ones.
 
@@ -199,11 +213,13 @@ class SparseBuffers:
         else:
             original(what, values)
 
-    def _make(self, _original, target, size, data, _flags):
+    def _make(self, original, target, size, data, flags):
+        if not flags & SPARSE_STORAGE:
+            return original(target, size, data, flags)
         assert data is None
         gl("glBufferData")(target, size, None, DYNAMIC_DRAW)
         self.committed[self._bound()] = np.zeros(-(-size // self.PAGE), bool)
-        self._fill(target, 0, size, self.WITHOUT)
+        return self._fill(target, 0, size, self.WITHOUT)
 
     def _commit(self, _original, target, begin, size, commit):
         assert commit and begin % self.PAGE == 0 and size > 0

@@ -5,6 +5,7 @@ import pytest
 from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction, vtkPlane
 
 import progiso
+from helpers.gl_hooks import intercepted, without_extension
 from helpers.images import make_image, marschner_lobb, noise, reference_volume, stream_of
 from helpers.scenes import CACHED, Scene, check_memory, orbit
 from progiso.oracle.caster import Camera
@@ -116,6 +117,68 @@ def test_loading_splits(scene):
     assert set(loading["programs"]) >= set(scene.statistics()["stages"])
     for times in loading["programs"].values():
         assert 0 < times["waited_ms"] and 0 < times["ms"] <= times["waited_ms"]
+
+
+def test_nobody_waits_until_a_figure_is_asked_for(volume):
+    """A render of one pass gives the GPU its work and does not wait for it."""
+    image, camera = volume
+    scene = Scene(image, 0.5, camera, SIZE)
+    scene.render()
+    before = scene.mapper.GetStatistics()
+    assert before.GetNumberOfPasses() == 1
+    waits = []
+
+    def wait(original, *arguments):
+        waits.append(arguments)
+        return original(*arguments)
+
+    with intercepted("glClientWaitSync", wait):
+        scene.renderer.GetActiveCamera().Azimuth(5)
+        scene.window.Render()
+        assert scene.mapper.GetConverged() and not waits
+        assert before.GetPassValue(0, "active_rays") > 0 and waits
+        count = len(waits)
+        before.GetPassValue(0, "pairs")
+        assert len(waits) == count
+
+
+def test_figures_outlive_image_and_mapper(volume):
+    """Whoever has asked for none before the window's resources go still gets those of the image."""
+    image, camera = volume
+    scene = Scene(image, 0.5, camera, SIZE, **CACHED)
+    scene.render()
+    passes = scene.statistics()["passes"]
+    other = Scene(image, 0.5, camera, SIZE, **CACHED)
+    other.renderer.ResetCameraClippingRange()
+    other.window.Render()
+    statistics = other.mapper.GetStatistics()
+    other.volume.ReleaseGraphicsResources(other.window)
+    other.renderer.RemoveVolume(other.volume)
+    del other
+    assert statistics.GetNumberOfPasses() == len(passes)
+    pairs = [statistics.GetPassValue(i, "pairs") for i in range(len(passes))]
+    assert pairs == [p["pairs"] for p in passes]
+
+
+def test_snapshots_without_a_mapped_buffer(volume, monkeypatch):
+    """OpenGL 4.3 cannot map a buffer for good: the passes' records are the same."""
+    monkeypatch.setenv("PROGISO_GL_DEBUG", "0")
+    image, camera = volume
+    records = []
+    for extension in (b"GL_none", b"GL_ARB_buffer_storage"):
+        scene = Scene(image, 0.5, camera, SIZE, SpeculationLimit=1, **CACHED)
+        scene.window.Initialize()  # it looks up OpenGL's functions
+        mapped = []
+
+        def map_buffer(original, *arguments, mapped=mapped):
+            mapped.append(arguments)
+            return original(*arguments)
+
+        with without_extension(extension), intercepted("glMapBufferRange", map_buffer):
+            scene.render()
+        assert bool(mapped) == (extension == b"GL_none")
+        records.append([{**p, "elapsed_ms": 0} for p in scene.statistics()["passes"]])
+    assert records[0] == records[1]
 
 
 def test_memory_adds_up(scene):
