@@ -9,6 +9,9 @@
 
 namespace
 {
+// Of the decoded blocks of a whole volume neighbouring rays read neighbouring values.
+constexpr std::int64_t LargestPlainValues = 1LL << 29;
+
 int Index(Buffer buffer)
 {
   return static_cast<int>(buffer);

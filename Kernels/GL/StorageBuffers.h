@@ -74,8 +74,4 @@ Status MakeStorageBuffer(
 /// this size, and then 10 to 400 times slower.
 constexpr std::int64_t LargestPlainBuffer = 1LL << 27;
 
-/// Of decoded blocks neighbouring rays read neighbouring values, and a plain buffer is made 10
-/// times faster than a sparse one.
-constexpr std::int64_t LargestPlainValues = 1LL << 29;
-
 #endif

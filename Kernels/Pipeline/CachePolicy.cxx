@@ -7,14 +7,29 @@
 namespace
 {
 constexpr std::int64_t SmallestFirstCache = 1 << 14; // slots
-constexpr std::int64_t LargestFirstCache = 1 << 18;
+constexpr std::int64_t LargestFirstCache = 1 << 16;
 constexpr std::int64_t PixelsPerFirstSlot = 4;
-constexpr std::int64_t GrowthFactor = 4;
-constexpr std::int64_t Headroom = 2;          // slots for each that is needed
-constexpr std::int64_t LargestStep = 1 << 18; // slots
+constexpr std::int64_t GrowthFactor = 2; // of a cache that is copied, and of a small one
 constexpr int MaximumConsecutiveDenials = 3;
+// A GPU makes memory at 1 to 2 milliseconds a mebibyte: so many slots are 4.7 MiB.
+constexpr std::int64_t LargestStep = 1 << 14;
+constexpr std::int64_t ShrinkFactor = 4;
+constexpr std::int64_t HeadroomOfShrunk = 2;
 constexpr std::size_t RecentImages = 8;
 constexpr double PauseMilliseconds = 2000.0;
+
+// What a cache should have that is too small for so many slots. Growth costs what it adds: this is
+// little more.
+std::int64_t WithHeadroom(std::int64_t needed)
+{
+  return needed + needed / 4;
+}
+
+// Of an image that used so many slots, the next may use some others.
+std::int64_t WithHeadroomAhead(std::int64_t used)
+{
+  return used + used / 2;
+}
 }
 
 std::int64_t CachePolicy::SlotsAtFirst(std::int64_t pixels, std::int64_t maximumSlots)
@@ -30,12 +45,12 @@ std::int64_t CachePolicy::SlotsAfterPass(
   this->ConsecutiveDenials = pass.RefusedBlocks > 0 ? this->ConsecutiveDenials + 1 : 0;
   if (this->ConsecutiveDenials > MaximumConsecutiveDenials)
   {
-    this->Wanted = std::max(this->Wanted, 2 * slots);
+    this->Wanted = std::max(this->Wanted, GrowthFactor * slots);
   }
   if (this->ConsecutiveDenials > 0 && needed > slots)
   {
     const std::int64_t least = slots < pixels ? GrowthFactor * slots : 0;
-    this->Wanted = std::max({ this->Wanted, least, Headroom * needed });
+    this->Wanted = std::max({ this->Wanted, least, WithHeadroom(needed) });
   }
   return this->ConsecutiveDenials > 0 ? this->StepFrom(slots, maximumSlots) : slots;
 }
@@ -47,21 +62,35 @@ std::int64_t CachePolicy::SlotsForNewImage(
   {
     return slots;
   }
-  this->Wanted = std::max(this->Wanted, Headroom * this->RecentUsage.back());
   const std::int64_t most = *std::max_element(this->RecentUsage.begin(), this->RecentUsage.end());
-  if (this->RecentUsage.size() == RecentImages && GrowthFactor * most < slots &&
+  if (this->RecentUsage.size() == RecentImages && ShrinkFactor * most < slots &&
     idleMilliseconds >= PauseMilliseconds)
   {
-    return std::min(std::max(Headroom * most, SmallestFirstCache), slots);
+    return std::min(std::max(HeadroomOfShrunk * most, SmallestFirstCache), slots);
   }
+  this->Wanted = std::max(this->Wanted, WithHeadroomAhead(this->RecentUsage.back()));
   return this->StepFrom(slots, maximumSlots);
 }
 
-// Nothing is shown before the first image is complete: it does not wait for memory step by step.
+// A copy costs all that the cache has: it is to be the last for long. Memory that is added in place
+// comes step by step, so that no image waits for much. Only the first image does: nothing is shown
+// before.
 std::int64_t CachePolicy::StepFrom(std::int64_t slots, std::int64_t maximumSlots) const
 {
-  const std::int64_t most = this->RecentUsage.empty() ? maximumSlots : slots + LargestStep;
-  return std::max(slots, std::min({ this->Wanted, most, maximumSlots }));
+  if (this->Wanted <= slots)
+  {
+    return slots;
+  }
+  std::int64_t next = this->Wanted;
+  if (!this->InPlace)
+  {
+    next = std::max(next, GrowthFactor * slots);
+  }
+  else if (!this->RecentUsage.empty())
+  {
+    next = std::min(next, slots + LargestStep);
+  }
+  return std::max(slots, std::min(next, maximumSlots));
 }
 
 void CachePolicy::RecordImage(std::int64_t touchedSlots)
@@ -78,7 +107,8 @@ void CachePolicy::RecordGrowth()
   this->ConsecutiveDenials = 0;
 }
 
-void CachePolicy::Reset()
+void CachePolicy::Reset(bool inPlace)
 {
   *this = CachePolicy();
+  this->InPlace = inPlace;
 }

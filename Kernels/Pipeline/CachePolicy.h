@@ -24,7 +24,7 @@ public:
   std::int64_t SlotsAfterPass(const glsl::PassRecord& pass, std::int64_t slots, std::int64_t pixels,
     std::int64_t maximumSlots);
 
-  /// A cache of which the last image used more than half grows. One that the last images left
+  /// A cache of which the last image used more than two thirds grows. One that the last images left
   /// mostly unused shrinks, but not as far that it would soon grow again, and only after a pause of
   /// so many milliseconds: not while a user turns the volume.
   std::int64_t SlotsForNewImage(
@@ -34,12 +34,14 @@ public:
   void RecordImage(std::int64_t touchedSlots);
   /// Records that the cache has grown.
   void RecordGrowth();
-  /// Forgets all that was recorded of another cache.
-  void Reset();
+  /// Forgets all that was recorded of another cache. `inPlace`: memory is added to this one, which
+  /// else moves to larger buffers.
+  void Reset(bool inPlace);
 
 private:
   std::int64_t StepFrom(std::int64_t slots, std::int64_t maximumSlots) const;
 
+  bool InPlace = false;
   int ConsecutiveDenials = 0;           ///< passes in a row that were denied blocks
   std::int64_t Wanted = 0;              ///< slots that it grows to
   std::deque<std::int64_t> RecentUsage; ///< slots that the last images used, newest last

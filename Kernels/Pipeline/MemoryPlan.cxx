@@ -4,7 +4,6 @@
 
 #include "GL/HostTransfer.h"
 #include "GL/SnapshotQueue.h"
-#include "GL/StorageBuffers.h"
 #include "GL/UniformBuffers.h"
 
 #include <algorithm>
@@ -18,6 +17,8 @@ constexpr std::int64_t AutomaticDeviceShare = 4;        // likewise: a quarter o
 constexpr std::int64_t MinimumSlots = 32 * glsl::LEAST_WINDOW;
 constexpr std::int64_t MinimumMapPages = 8 * glsl::LEAST_WINDOW;
 constexpr std::int64_t SlotsPerMapPage = 8;
+
+constexpr std::int64_t LargestCopiedCache = 1 << 16; // slots: less costs little to copy
 
 std::int64_t LeastSlots(const SceneNeeds& scene)
 {
@@ -122,7 +123,7 @@ SceneNeeds WithReservation(const DeviceLimits& limits, const SceneNeeds& scene)
   SceneNeeds needs = scene;
   needs.SlotCapacity = 0;
   const std::int64_t most = SlotsOfOneBuffer(limits, needs);
-  if (!limits.SparseBuffers || BytesPerSlot(needs) * most <= LargestPlainValues)
+  if (!limits.SparseBuffers || most <= LargestCopiedCache)
   {
     return needs;
   }

@@ -30,8 +30,8 @@ SceneNeeds WithCache(const SceneNeeds& scene, std::int64_t slots);
 SceneNeeds WithWholeVolume(const SceneNeeds& scene);
 ///@}
 
-/// The scene with addresses reserved for a cache of any size, where the GPU can do that and plain
-/// buffers of this size would be slow.
+/// The scene with addresses reserved for a cache of any size, where the GPU can do that and the
+/// volume needs more than a small one.
 SceneNeeds WithReservation(const DeviceLimits& limits, const SceneNeeds& scene);
 
 struct CacheGrowth

@@ -22,7 +22,7 @@ public:
   void RecordImage(std::int64_t passes) { this->Passes = passes; }
 
 private:
-  std::int64_t Passes = 0;  ///< of the last image; 0: there was none
+  std::int64_t Passes = 0;   ///< of the last image; 0: there was none
   double Milliseconds = 0.0; ///< of a pass; 0: not known
 };
 

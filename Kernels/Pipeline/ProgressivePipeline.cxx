@@ -95,7 +95,7 @@ void ProgressivePipeline::SetVolume(const PipelineVolume& volume)
   this->Needs.Colored = volume.Colors.Data != nullptr;
   this->Needs.HiddenCells = !volume.Hidden.empty();
   this->Needs.HiddenWords = static_cast<std::int64_t>(volume.Hidden.size());
-  this->Policy.Reset();
+  this->Policy.Reset(this->Needs.SlotCapacity > 0);
 }
 
 void ProgressivePipeline::SetPalette(const std::optional<glsl::Palette>& palette)
@@ -229,7 +229,7 @@ void ProgressivePipeline::RemakeCache(std::int64_t slots)
   const std::int64_t items = std::max(slots, this->Needs.Macrocells);
   this->Gpu->Dispatch(
     Stage::CacheReset, std::min(GroupsFor(Stage::CacheReset, items), MaximumResetGroups));
-  this->Policy.Reset();
+  this->Policy.Reset(this->Needs.SlotCapacity > 0);
 }
 
 // Gives the cache more slots while it keeps what it holds. `ahead`: they are not needed yet.

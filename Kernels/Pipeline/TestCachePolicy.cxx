@@ -8,7 +8,8 @@ namespace
 {
 constexpr std::int64_t Pixels = 100000;
 constexpr std::int64_t Maximum = 1000000; // slots
-constexpr double NoPause = 1999.0;        // milliseconds
+constexpr std::int64_t Step = 16384;
+constexpr double NoPause = 1999.0; // milliseconds
 constexpr double Pause = 2000.0;
 
 // A pass that used so many slots and was denied so many blocks.
@@ -23,11 +24,11 @@ glsl::PassRecord Pass(std::uint32_t touched, std::uint32_t denied)
 
 TEST(CachePolicy, FirstCacheHasASlotForFourPixels)
 {
-  EXPECT_EQ(CachePolicy::SlotsAtFirst(1280 * 720, Maximum), 1280 * 720 / 4);
+  EXPECT_EQ(CachePolicy::SlotsAtFirst(400 * 300, Maximum), 400 * 300 / 4);
   EXPECT_EQ(CachePolicy::SlotsAtFirst(4 * 16384 + 4, Maximum), 16385);
   EXPECT_EQ(CachePolicy::SlotsAtFirst(4 * 16384 - 4, Maximum), 16384);
   EXPECT_EQ(CachePolicy::SlotsAtFirst(1, Maximum), 16384);
-  EXPECT_EQ(CachePolicy::SlotsAtFirst(3840 * 2160, Maximum), 262144);
+  EXPECT_EQ(CachePolicy::SlotsAtFirst(3840 * 2160, Maximum), 65536);
   EXPECT_EQ(CachePolicy::SlotsAtFirst(1280 * 720, 3000), 3000);
 }
 
@@ -40,18 +41,27 @@ TEST(CachePolicy, StaysWhileNothingIsDenied)
   }
 }
 
-TEST(CachePolicy, SmallCacheGrowsAtOnceFourfold)
+TEST(CachePolicy, SmallCacheDoublesAtOnce)
 {
   CachePolicy policy;
-  EXPECT_EQ(policy.SlotsAfterPass(Pass(16384, 1), 16384, Pixels, Maximum), 4 * 16384);
+  EXPECT_EQ(policy.SlotsAfterPass(Pass(16384, 1), 16384, Pixels, Maximum), 2 * 16384);
 }
 
-TEST(CachePolicy, GrowsToTwiceWhatIsNeeded)
+TEST(CachePolicy, GrowsToAQuarterMoreThanIsNeeded)
 {
-  EXPECT_EQ(CachePolicy().SlotsAfterPass(Pass(16384, 16384 + 1), 16384, Pixels, Maximum),
-    2 * (2 * 16384 + 1));
-  EXPECT_EQ(CachePolicy().SlotsAfterPass(Pass(16384, 16384), 16384, Pixels, Maximum), 4 * 16384);
-  EXPECT_EQ(CachePolicy().SlotsAfterPass(Pass(Pixels, 1), Pixels, Pixels, Maximum), 2 * Pixels + 2);
+  CachePolicy policy;
+  policy.Reset(true);
+  EXPECT_EQ(policy.SlotsAfterPass(Pass(Pixels, 20), Pixels, Pixels, Maximum), 125025);
+  EXPECT_EQ(policy.SlotsAfterPass(Pass(Pixels, 50000), Pixels, Pixels, Maximum), 187500);
+}
+
+TEST(CachePolicy, ACopiedCacheDoublesAtLeast)
+{
+  CachePolicy policy;
+  policy.Reset(false);
+  EXPECT_EQ(policy.SlotsAfterPass(Pass(Pixels, 20), Pixels, Pixels, Maximum), 2 * Pixels);
+  policy.RecordImage(2 * Pixels);
+  EXPECT_EQ(policy.SlotsForNewImage(2 * Pixels, Maximum, NoPause), 4 * Pixels);
 }
 
 TEST(CachePolicy, WithRoomLeftGrowsOnlyWhenDeniedAgainAndAgain)
@@ -95,35 +105,36 @@ TEST(CachePolicy, OnlyTheFirstImageGrowsByMoreThanAStep)
 {
   const std::int64_t much = 100 * Maximum;
   CachePolicy policy;
+  policy.Reset(true);
   EXPECT_EQ(policy.SlotsAfterPass(Pass(Pixels, 3 * Maximum), Pixels, Pixels, much),
-    2 * (Pixels + 3 * Maximum));
-  policy.Reset();
+    (Pixels + 3 * Maximum) * 5 / 4);
+  policy.Reset(true);
   policy.RecordImage(Pixels);
-  EXPECT_EQ(
-    policy.SlotsAfterPass(Pass(Pixels, 3 * Maximum), Pixels, Pixels, much), Pixels + 262144);
+  EXPECT_EQ(policy.SlotsAfterPass(Pass(Pixels, 3 * Maximum), Pixels, Pixels, much), Pixels + Step);
   // denied again, the cache gets the next step, but not where the pass got all that it wanted
-  EXPECT_EQ(policy.SlotsAfterPass(Pass(Pixels, 0), Pixels + 262144, Pixels, much), Pixels + 262144);
-  EXPECT_EQ(
-    policy.SlotsAfterPass(Pass(Pixels, 1), Pixels + 262144, Pixels, much), Pixels + 2 * 262144);
+  EXPECT_EQ(policy.SlotsAfterPass(Pass(Pixels, 0), Pixels + Step, Pixels, much), Pixels + Step);
+  EXPECT_EQ(policy.SlotsAfterPass(Pass(Pixels, 1), Pixels + Step, Pixels, much), Pixels + 2 * Step);
 }
 
-TEST(CachePolicy, GrowsForANewImageWhenTheLastUsedMoreThanHalf)
+TEST(CachePolicy, GrowsForANewImageWhenTheLastUsedMoreThanTwoThirds)
 {
   CachePolicy policy;
-  EXPECT_EQ(policy.SlotsForNewImage(16384, Maximum, NoPause), 16384);
-  policy.RecordImage(8192);
-  EXPECT_EQ(policy.SlotsForNewImage(16384, Maximum, NoPause), 16384);
-  policy.RecordImage(8193);
-  EXPECT_EQ(policy.SlotsForNewImage(16384, Maximum, NoPause), 2 * 8193);
+  policy.Reset(true);
+  EXPECT_EQ(policy.SlotsForNewImage(30000, Maximum, NoPause), 30000);
+  policy.RecordImage(20000);
+  EXPECT_EQ(policy.SlotsForNewImage(30000, Maximum, NoPause), 30000);
+  policy.RecordImage(20002);
+  EXPECT_EQ(policy.SlotsForNewImage(30000, Maximum, NoPause), 30003);
 }
 
 TEST(CachePolicy, GrowsStepByStepForNewImages)
 {
   CachePolicy policy;
-  policy.RecordImage(300000);
-  EXPECT_EQ(policy.SlotsForNewImage(100000, Maximum, NoPause), 100000 + 262144);
-  policy.RecordImage(300000);
-  EXPECT_EQ(policy.SlotsForNewImage(100000 + 262144, Maximum, NoPause), 600000);
+  policy.Reset(true);
+  policy.RecordImage(100000);
+  EXPECT_EQ(policy.SlotsForNewImage(120000, Maximum, NoPause), 120000 + Step);
+  policy.RecordImage(100000);
+  EXPECT_EQ(policy.SlotsForNewImage(120000 + Step, Maximum, NoPause), 150000);
 }
 
 TEST(CachePolicy, ShrinksWhenEightImagesUsedLessThanAQuarter)
@@ -179,6 +190,6 @@ TEST(CachePolicy, ResetForgetsImages)
   {
     policy.RecordImage(100);
   }
-  policy.Reset();
+  policy.Reset(false);
   EXPECT_EQ(policy.SlotsForNewImage(100000, Maximum, Pause), 100000);
 }

@@ -200,8 +200,8 @@ std::vector<SceneNeeds> KindsOfSlots()
 TEST(MemoryPlan, AddressesAreReservedOnlyWhereThatHelps)
 {
   EXPECT_EQ(WithReservation(Limits(), Scene(1024)).SlotCapacity, 0);
-  EXPECT_EQ(WithReservation(SparseLimits(), Scene(512)).SlotCapacity, 0); // 512 MiB of samples
-  EXPECT_GT(WithReservation(SparseLimits(), Scene(516)).SlotCapacity, 0);
+  EXPECT_EQ(WithReservation(SparseLimits(), Scene(160)).SlotCapacity, 0);     // 40^3 blocks
+  EXPECT_EQ(WithReservation(SparseLimits(), Scene(164)).SlotCapacity, 69120); // 41^3, rounded up
 }
 
 TEST(MemoryPlan, ReservedPartsLieSideBySide)

@@ -8,7 +8,6 @@ import progiso
 from helpers.gl_hooks import SparseBuffers
 from helpers.images import make_image, noise, reference_volume
 from helpers.scenes import CACHED, Scene, orbit
-from progiso.oracle.caster import Camera
 
 SIZE = (240, 180)
 
@@ -31,7 +30,7 @@ def volume():
 
 @pytest.mark.parametrize("colors", [False, True])
 def test_what_the_cache_holds_stays(volume, colors):
-    """An image that has used more than half of the slots makes the cache grow for the next.
+    """An image that has used more than two thirds of the slots makes the cache grow for the next.
 
     Back at the first view, nothing is decoded again, and the image is the same bit by bit.
     """
@@ -41,10 +40,10 @@ def test_what_the_cache_holds_stays(volume, colors):
         scene.mapper.SetColorInputData(image)
     first, picture = scene.depth(), scene.picture()
     before, needed = slots(scene), decoded(scene)
-    assert before / 2 < needed < before
+    assert before / 1.5 < needed < before
     scene.isovalue = nothing
     scene.render()
-    assert slots(scene) >= 2 * needed > before
+    assert slots(scene) >= 1.5 * needed > before
     scene.isovalue = 3.65
     assert scene.depth().tobytes() == first.tobytes()
     assert scene.picture().tobytes() == picture.tobytes()
@@ -83,29 +82,27 @@ def test_within_the_budget_at_every_size(volume):
     vtkRenderWindow().GetClassName() != "vtkOSOpenGLRenderWindow",
     reason="a GPU has sparse buffers, or not",
 )
-def test_memory_is_committed_bit_by_bit(monkeypatch):
-    """Of a cache that could be larger than a plain buffer should be, only what it needs has memory.
+def test_memory_is_committed_bit_by_bit(volume, monkeypatch):
+    """Of all that the cache has addresses for, only what it needs has memory.
 
     Neither stages nor copies touch what has none, and the statistics tell what has.
     """
     monkeypatch.setenv("PROGISO_GL_DEBUG", "0")  # the context says that it has no sparse buffers
-    # the noise is in a corner of 516 x 512 x 512 samples, which need more than a plain buffer
-    values = np.zeros((516, 512, 512), np.float32)
-    values[:180, :180, :180] = noise((180, 180, 180), 3)
-    image = progiso.compress(make_image(values), rate=1)
-    camera = Camera((-80.0, -100.0, -120.0), (90.0, 90.0, 90.0))
+    image, camera, nothing = volume
     settings = {"ColorInputData": image, **CACHED}
     plain = Scene(image, 3.0, camera, SIZE, **settings)
     expected, picture = plain.depth(), plain.picture()
-    scene = Scene(image, 4.6, camera, SIZE, **settings)
+    scene = Scene(image, nothing, camera, SIZE, **settings)
     scene.window.Initialize()  # it looks up OpenGL's functions
     with SparseBuffers().offered() as sparse:
         scene.depth()
         before = slots(scene)
+        sparse.largest_commit = 0
         scene.isovalue = 3.0
         assert scene.depth().tobytes() == expected.tobytes()
         assert scene.picture().tobytes() == picture.tobytes()
         assert slots(scene) > before
+        assert sparse.largest_commit == 16384 * 256
         buffers = scene.statistics()["memory"]["buffers"]
         cache = [buffers[f"cache_{of}"] for of in ("values", "map", "free_slots", "requests")]
         assert sum(cache) == sparse.bytes()
