@@ -3,6 +3,7 @@
 #include "vtkProgressiveIsosurfaceMapper.h"
 
 #include "GL/Stopwatch.h"
+#include "Pipeline/FixedView.h"
 #include "Pipeline/ProgressivePipeline.h"
 #include "Scene/BoundWindow.h"
 #include "Scene/CameraTranslation.h"
@@ -571,7 +572,7 @@ bool vtkProgressiveIsosurfaceMapper::GetHit(int x, int y, double position[3], do
     return false;
   }
   const PipelineScene& scene = impl.View.GetScene();
-  const glsl::View& view = scene.View;
+  const ViewGeometry& view = scene.View;
   impl.Window.Get()->MakeCurrent();
   const PixelHit hit =
     impl.Pipeline.GetHits().Read(static_cast<std::int64_t>(y) * view.ImageSize[0] + x);
@@ -580,7 +581,7 @@ bool vtkProgressiveIsosurfaceMapper::GetHit(int x, int y, double position[3], do
     return false;
   }
   // the key of a translucent image is that of its last hit
-  const double t = scene.Translucent ? hit.Depth : HitParameter(view, x, y, hit.Key);
+  const double t = scene.Translucent ? hit.Depth : HitDepth(FindDrawnDepths(view), hit.Key);
   impl.View.FindPosition(x, y, t, position);
   const glsl::FloatSum& stored = view.Isovalues[hit.Isovalue];
   isovalue = impl.Inputs.GetValues().GetVolume()->ToSample(double(stored.High) + stored.Low);

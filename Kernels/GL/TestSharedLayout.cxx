@@ -41,28 +41,42 @@ using Members = std::map<std::string, Member>;
     { offsetof(glsl::block, array[0].member), sizeof(glsl::block::array[0]), \
       sizeof(glsl::block::array[0].member) * std::size(glsl::block().array) } }
 
+#define FIXED(block, vector) \
+  MEMBER(block, vector.BaseHigh), MEMBER(block, vector.Padding0), \
+    MEMBER(block, vector.BaseLow), MEMBER(block, vector.Padding1), \
+    MEMBER(block, vector.PerXHigh), MEMBER(block, vector.Padding2), \
+    MEMBER(block, vector.PerXLow), MEMBER(block, vector.Padding3), \
+    MEMBER(block, vector.PerXLeast), MEMBER(block, vector.Padding4), \
+    MEMBER(block, vector.PerYHigh), MEMBER(block, vector.Padding5), \
+    MEMBER(block, vector.PerYLow), MEMBER(block, vector.Padding6), \
+    MEMBER(block, vector.PerYLeast), MEMBER(block, vector.Padding7)
+#define FIXED_ELEMENTS(block, array) \
+  ELEMENTS(block, array, BaseHigh), ELEMENTS(block, array, Padding0), \
+    ELEMENTS(block, array, BaseLow), ELEMENTS(block, array, Padding1), \
+    ELEMENTS(block, array, PerXHigh), ELEMENTS(block, array, Padding2), \
+    ELEMENTS(block, array, PerXLow), ELEMENTS(block, array, Padding3), \
+    ELEMENTS(block, array, PerXLeast), ELEMENTS(block, array, Padding4), \
+    ELEMENTS(block, array, PerYHigh), ELEMENTS(block, array, Padding5), \
+    ELEMENTS(block, array, PerYLow), ELEMENTS(block, array, Padding6), \
+    ELEMENTS(block, array, PerYLeast), ELEMENTS(block, array, Padding7)
+
 const Members BlockMembers = {
-  MEMBER(View, RayOrigin.Base), MEMBER(View, RayOrigin.Padding0),
-  MEMBER(View, RayOrigin.PerX), MEMBER(View, RayOrigin.Padding1),
-  MEMBER(View, RayOrigin.PerY), MEMBER(View, RayOrigin.Padding2),
-  MEMBER(View, RayDirection.Base), MEMBER(View, RayDirection.Padding0),
-  MEMBER(View, RayDirection.PerX), MEMBER(View, RayDirection.Padding1),
-  MEMBER(View, RayDirection.PerY), MEMBER(View, RayDirection.Padding2),
+  FIXED(View, RayOrigin), FIXED(View, RayWay),
   MEMBER(View, EyeOrigin.Base), MEMBER(View, EyeOrigin.Padding0),
   MEMBER(View, EyeOrigin.PerX), MEMBER(View, EyeOrigin.Padding1),
   MEMBER(View, EyeOrigin.PerY), MEMBER(View, EyeOrigin.Padding2),
   MEMBER(View, EyeDirection.Base), MEMBER(View, EyeDirection.Padding0),
   MEMBER(View, EyeDirection.PerX), MEMBER(View, EyeDirection.Padding1),
   MEMBER(View, EyeDirection.PerY), MEMBER(View, EyeDirection.Padding2),
-  MEMBER(View, NearDistance), MEMBER(View, FarDistance),
-  MEMBER(View, Padding0), MEMBER(View, Padding1),
-  ELEMENTS(View, ClippingPlanes, Normal), ELEMENTS(View, ClippingPlanes, Offset),
-  MEMBER(View, CroppingLow), MEMBER(View, Padding2),
-  MEMBER(View, CroppingHigh), MEMBER(View, Padding3),
+  MEMBER(View, CroppingLow.Cell), MEMBER(View, CroppingLow.Padding0),
+  MEMBER(View, CroppingLow.Place), MEMBER(View, CroppingLow.Padding1),
+  MEMBER(View, CroppingHigh.Cell), MEMBER(View, CroppingHigh.Padding0),
+  MEMBER(View, CroppingHigh.Place), MEMBER(View, CroppingHigh.Padding1),
+  FIXED_ELEMENTS(View, ClippingOrigin), FIXED_ELEMENTS(View, ClippingWay),
   MEMBER(View, FirstDrawn), MEMBER(View, NumberOfIsovalues),
   MEMBER(View, LastDrawn), MEMBER(View, NumberOfClippingPlanes),
   MEMBER(View, ImageSize), MEMBER(View, ImageOrigin), MEMBER(View, DrawnRegions),
-  MEMBER(View, Padding4), MEMBER(View, Padding5), MEMBER(View, Padding6),
+  MEMBER(View, HasRays), MEMBER(View, FirstDepth), MEMBER(View, DepthOfWay),
   ELEMENTS(View, Isovalues, High), ELEMENTS(View, Isovalues, Low),
   ELEMENTS(View, Isovalues, Padding0), ELEMENTS(View, Isovalues, Padding1),
 

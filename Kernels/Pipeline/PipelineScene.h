@@ -4,11 +4,11 @@
 #ifndef PipelineScene_h
 #define PipelineScene_h
 
-#include "Shaders/Glsl.h"
+#include "Pipeline/ViewGeometry.h"
 
 struct PipelineScene
 {
-  glsl::View View = {}; ///< all bytes zero: views are compared byte by byte
+  ViewGeometry View = {}; ///< all bytes zero: views are compared byte by byte
   glsl::Look Look = {};
   bool Translucent = false; ///< an isosurface is
   bool Obstructed = false;  ///< opaque geometry may hide translucent isosurfaces

@@ -3,6 +3,7 @@
 #include "Pipeline/ProgressivePipeline.h"
 
 #include "GL/DepthCapture.h"
+#include "Pipeline/FixedView.h"
 
 #include <algorithm>
 #include <chrono>
@@ -319,7 +320,7 @@ Status ProgressivePipeline::SetScene(
   {
     this->DropDecodedBlocks();
   }
-  this->Gpu->Uniforms.Upload(scene.View);
+  this->Gpu->Uniforms.Upload(FixView(scene.View));
   this->Gpu->Uniforms.Upload(scene.Look);
   const SceneNeeds before = this->Needs;
   this->UpdateNeeds(scene);
@@ -355,7 +356,7 @@ void ProgressivePipeline::DropDecodedBlocks()
 
 void ProgressivePipeline::UpdateNeeds(const PipelineScene& scene)
 {
-  const glsl::View& view = scene.View;
+  const ViewGeometry& view = scene.View;
   std::copy(view.ImageSize, view.ImageSize + 2, this->Viewport);
   std::copy(view.ImageOrigin, view.ImageOrigin + 2, this->Viewport + 2);
   this->Needs.Pixels = static_cast<std::int64_t>(view.ImageSize[0]) * view.ImageSize[1];

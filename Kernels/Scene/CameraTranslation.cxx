@@ -3,6 +3,7 @@
 #include "Scene/CameraTranslation.h"
 
 #include "vtkMatrix4x4.h"
+#include "vtkNew.h"
 
 #include <algorithm>
 #include <cmath>
@@ -61,7 +62,7 @@ EyeRays MakeEyeRays(vtkMatrix4x4* projection, int width, int height)
 
 // Only the base of origins is a point; everything else is a vector.
 void TranslateToIndex(
-  const double eye[3][3], bool isOrigin, vtkMatrix4x4* eyeToIndex, glsl::PixelVector& index)
+  const double eye[3][3], bool isOrigin, vtkMatrix4x4* eyeToIndex, PixelVector& index)
 {
   double* const terms[] = { index.Base, index.PerX, index.PerY };
   for (int i = 0; i < 3; ++i)
@@ -72,7 +73,7 @@ void TranslateToIndex(
   }
 }
 
-void CopyTerms(const double terms[3][3], glsl::PixelVector& vector)
+void CopyTerms(const double terms[3][3], PixelVector& vector)
 {
   std::copy(terms[0], terms[0] + 3, vector.Base);
   std::copy(terms[1], terms[1] + 3, vector.PerX);
@@ -85,14 +86,20 @@ bool AreSmall(const double vector[3])
   return std::all_of(vector, vector + 3, [=](double value) { return std::abs(value) <= most; });
 }
 
-bool AreSmall(const glsl::PixelVector& vector)
+bool AreSmall(const PixelVector& vector)
 {
   return AreSmall(vector.Base) && AreSmall(vector.PerX) && AreSmall(vector.PerY);
 }
 }
 
-void TranslateRays(vtkMatrix4x4* projection, vtkMatrix4x4* eyeToIndex, glsl::View& view)
+void TranslateRays(vtkMatrix4x4* projection, vtkMatrix4x4* eyeToIndex, ViewGeometry& view)
 {
+  vtkNew<vtkMatrix4x4> indexToEye;
+  vtkMatrix4x4::Invert(eyeToIndex, indexToEye);
+  for (int column = 0; column < 4; ++column)
+  {
+    view.Depth[column] = -indexToEye->GetElement(2, column);
+  }
   const EyeRays rays = MakeEyeRays(projection, view.ImageSize[0], view.ImageSize[1]);
   TranslateToIndex(rays.Origin, true, eyeToIndex, view.RayOrigin);
   TranslateToIndex(rays.Direction, false, eyeToIndex, view.RayDirection);
@@ -130,7 +137,7 @@ void TranslateNormals(vtkMatrix4x4* eyeToIndex, glsl::Look& look)
   }
 }
 
-bool HasRays(const glsl::View& view)
+bool HasRays(const ViewGeometry& view)
 {
   return AreSmall(view.RayOrigin) && AreSmall(view.RayDirection);
 }

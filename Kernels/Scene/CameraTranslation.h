@@ -5,13 +5,13 @@
 #ifndef CameraTranslation_h
 #define CameraTranslation_h
 
-#include "Shaders/Glsl.h"
+#include "Pipeline/ViewGeometry.h"
 
 class vtkMatrix4x4;
 
 /// Finds the ray of every pixel of `view.ImageSize`. `projection` maps eye to clip coordinates,
 /// with depths from -1 to 1.
-void TranslateRays(vtkMatrix4x4* projection, vtkMatrix4x4* eyeToIndex, glsl::View& view);
+void TranslateRays(vtkMatrix4x4* projection, vtkMatrix4x4* eyeToIndex, ViewGeometry& view);
 
 /// Finds how a ray's parameter maps to depths in the window.
 void TranslateDepths(vtkMatrix4x4* projection, glsl::Look& look);
@@ -21,6 +21,6 @@ void TranslateNormals(vtkMatrix4x4* eyeToIndex, glsl::Look& look);
 
 /// Whether the rays are finite. They are not if the image's geometry, the prop's matrix or the
 /// camera is not finite or has no inverse; a walk along them would never end.
-bool HasRays(const glsl::View& view);
+bool HasRays(const ViewGeometry& view);
 
 #endif

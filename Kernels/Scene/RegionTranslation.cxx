@@ -37,7 +37,7 @@ void FindIndexToWorld(
   vtkMatrix4x4::Multiply4x4(prop->GetMatrix(), matrix, matrix);
 }
 
-void TranslateExtent(vtkImageData* image, vtkCompressedVolume* volume, glsl::View& view)
+void TranslateExtent(vtkImageData* image, vtkCompressedVolume* volume, ViewGeometry& view)
 {
   const int* drawn = image->GetExtent();
   const int* samples = volume->GetExtent();
@@ -50,7 +50,7 @@ void TranslateExtent(vtkImageData* image, vtkCompressedVolume* volume, glsl::Vie
   }
 }
 
-void TranslateClipping(vtkPlaneCollection* planes, vtkMatrix4x4* worldToIndex, glsl::View& view)
+void TranslateClipping(vtkPlaneCollection* planes, vtkMatrix4x4* worldToIndex, ViewGeometry& view)
 {
   vtkNew<vtkMatrix4x4> indexToWorld;
   vtkMatrix4x4::Invert(worldToIndex, indexToWorld);
@@ -70,14 +70,14 @@ void TranslateClipping(vtkPlaneCollection* planes, vtkMatrix4x4* worldToIndex, g
         translated[axis] += terms[row] * indexToWorld->GetElement(row, axis);
       }
     }
-    glsl::ClippingPlane& translatedPlane = view.ClippingPlanes[view.NumberOfClippingPlanes++];
+    ClippingPlane& translatedPlane = view.ClippingPlanes[view.NumberOfClippingPlanes++];
     std::copy(translated, translated + 3, translatedPlane.Normal);
     translatedPlane.Offset = translated[3];
   }
 }
 
 void TranslateCropping(
-  vtkVolumeMapper* mapper, vtkImageData* image, vtkCompressedVolume* volume, glsl::View& view)
+  vtkVolumeMapper* mapper, vtkImageData* image, vtkCompressedVolume* volume, ViewGeometry& view)
 {
   view.DrawnRegions = glsl::ALL_REGIONS;
   if (!mapper->GetCropping())

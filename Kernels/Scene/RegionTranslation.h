@@ -4,7 +4,7 @@
 #ifndef RegionTranslation_h
 #define RegionTranslation_h
 
-#include "Shaders/Glsl.h"
+#include "Pipeline/ViewGeometry.h"
 
 class vtkCompressedVolume;
 class vtkImageData;
@@ -20,14 +20,14 @@ void FindIndexToWorld(
 
 /// Finds the samples between which the surface is drawn: those of the image. A stream may cover
 /// more samples, which other processes draw.
-void TranslateExtent(vtkImageData* image, vtkCompressedVolume* volume, glsl::View& view);
+void TranslateExtent(vtkImageData* image, vtkCompressedVolume* volume, ViewGeometry& view);
 
 /// Translates planes in world coordinates; null stands for none.
-void TranslateClipping(vtkPlaneCollection* planes, vtkMatrix4x4* worldToIndex, glsl::View& view);
+void TranslateClipping(vtkPlaneCollection* planes, vtkMatrix4x4* worldToIndex, ViewGeometry& view);
 
 /// Translates cropping regions. Their planes lie in the image's own axes, whatever its direction
 /// matrix is.
 void TranslateCropping(
-  vtkVolumeMapper* mapper, vtkImageData* image, vtkCompressedVolume* volume, glsl::View& view);
+  vtkVolumeMapper* mapper, vtkImageData* image, vtkCompressedVolume* volume, ViewGeometry& view);
 
 #endif

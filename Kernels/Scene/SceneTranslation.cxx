@@ -36,7 +36,7 @@ PipelineScene TranslateScene(vtkRenderer* renderer, vtkVolume* prop, vtkVolumeMa
   vtkImageData* image, vtkCompressedVolume* volume, const int viewport[4])
 {
   PipelineScene scene;
-  glsl::View& view = scene.View;
+  ViewGeometry& view = scene.View;
   vtkCamera* camera = renderer->GetActiveCamera();
   vtkVolumeProperty* property = prop->GetProperty();
   vtkMatrix4x4* projection =

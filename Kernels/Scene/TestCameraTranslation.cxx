@@ -16,9 +16,9 @@ namespace
 constexpr int Width = 8, Height = 4;
 
 // Index space is the camera's: rays in both are the same.
-glsl::View RaysOf(vtkCamera* camera)
+ViewGeometry RaysOf(vtkCamera* camera)
 {
-  glsl::View view = {};
+  ViewGeometry view = {};
   view.ImageSize[0] = Width;
   view.ImageSize[1] = Height;
   vtkNew<vtkMatrix4x4> identity;
@@ -27,7 +27,7 @@ glsl::View RaysOf(vtkCamera* camera)
   return view;
 }
 
-double At(const glsl::PixelVector& vector, int axis, double x, double y)
+double At(const PixelVector& vector, int axis, double x, double y)
 {
   return vector.Base[axis] + x * vector.PerX[axis] + y * vector.PerY[axis];
 }
@@ -37,7 +37,7 @@ TEST(CameraTranslation, PerspectiveRaysMeetInTheEye)
 {
   vtkNew<vtkCamera> camera;
   camera->SetViewAngle(60.0);
-  const glsl::View view = RaysOf(camera);
+  const ViewGeometry view = RaysOf(camera);
   for (int axis = 0; axis < 3; ++axis)
   {
     EXPECT_NEAR(At(view.RayOrigin, axis, 1.5, 2.5), 0.0, 1e-15);
@@ -56,7 +56,7 @@ TEST(CameraTranslation, ParallelRaysStartOnTheCamerasPlane)
   vtkNew<vtkCamera> camera;
   camera->ParallelProjectionOn();
   camera->SetParallelScale(3.0);
-  const glsl::View view = RaysOf(camera);
+  const ViewGeometry view = RaysOf(camera);
   EXPECT_NEAR(At(view.RayOrigin, 1, 0.0, Height), 3.0, 1e-14);
   EXPECT_NEAR(At(view.RayOrigin, 0, 0.0, 0.0), -6.0, 1e-14);
   EXPECT_EQ(At(view.RayOrigin, 2, 2.0, 2.0), 0.0);
@@ -70,8 +70,8 @@ TEST(CameraTranslation, ParallelRaysStartOnTheCamerasPlane)
 TEST(CameraTranslation, MovesOriginsButNotDirections)
 {
   vtkNew<vtkCamera> camera;
-  glsl::View view = RaysOf(camera);
-  const glsl::View still = view;
+  ViewGeometry view = RaysOf(camera);
+  const ViewGeometry still = view;
   vtkNew<vtkMatrix4x4> eyeToIndex;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -121,7 +121,7 @@ TEST(CameraTranslation, NormalsAreGradientsByTheTransposedMatrix)
 TEST(CameraTranslation, FindsRaysThatAreNotFinite)
 {
   vtkNew<vtkCamera> camera;
-  glsl::View view = RaysOf(camera);
+  ViewGeometry view = RaysOf(camera);
   EXPECT_TRUE(HasRays(view));
   view.RayDirection.PerY[1] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(HasRays(view));

@@ -44,7 +44,7 @@ protected:
 
   vtkNew<vtkImageData> Image;
   vtkNew<vtkCompressedVolume> Volume;
-  glsl::View View = {};
+  ViewGeometry View = {};
 };
 
 void ExpectPoint(vtkMatrix4x4* matrix, const double from[3], double x, double y, double z)
@@ -105,7 +105,7 @@ TEST_F(RegionTranslation, ClippingPlanesKeepTheirSides)
   planes->AddItem(plane);
   TranslateClipping(planes, worldToIndex, this->View);
   ASSERT_EQ(this->View.NumberOfClippingPlanes, 1);
-  const glsl::ClippingPlane& translated = this->View.ClippingPlanes[0];
+  const ClippingPlane& translated = this->View.ClippingPlanes[0];
   EXPECT_NEAR(translated.Normal[0] * 2.0 + translated.Offset, 0.0, 1e-12);
   EXPECT_GT(translated.Normal[0] * 3.0 + translated.Offset, 0.0);
   EXPECT_NEAR(translated.Normal[1], 0.0, 1e-12);

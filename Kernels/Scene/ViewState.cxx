@@ -32,7 +32,7 @@ bool NearlySame(const double* a, const double* b)
   return difference <= 1e-7 * size;
 }
 
-bool NearlySame(const glsl::PixelVector& a, const glsl::PixelVector& b)
+bool NearlySame(const PixelVector& a, const PixelVector& b)
 {
   return NearlySame(a.Base, b.Base) && NearlySame(a.PerX, b.PerX) && NearlySame(a.PerY, b.PerY);
 }
@@ -61,11 +61,11 @@ Obstacles FindObstacles(vtkRenderer* renderer, vtkVolume* volume)
   return found;
 }
 
-bool HasSameHits(const glsl::View& a, const glsl::View& b)
+bool HasSameHits(const ViewGeometry& a, const ViewGeometry& b)
 {
-  glsl::View exact = b; // with a's camera, once that is found nearly the same
-  for (auto vector : { &glsl::View::RayOrigin, &glsl::View::RayDirection, &glsl::View::EyeOrigin,
-         &glsl::View::EyeDirection })
+  ViewGeometry exact = b; // with a's camera, once that is found nearly the same
+  for (auto vector : { &ViewGeometry::RayOrigin, &ViewGeometry::RayDirection, &ViewGeometry::EyeOrigin,
+         &ViewGeometry::EyeDirection })
   {
     if (!NearlySame(a.*vector, b.*vector))
     {
@@ -73,6 +73,7 @@ bool HasSameHits(const glsl::View& a, const glsl::View& b)
     }
     exact.*vector = a.*vector;
   }
+  std::copy(std::begin(a.Depth), std::end(a.Depth), exact.Depth);
   const double rangeOfA[] = { a.NearDistance, a.FarDistance, 0.0 };
   const double rangeOfB[] = { b.NearDistance, b.FarDistance, 0.0 };
   exact.NearDistance = a.NearDistance;
@@ -108,7 +109,7 @@ bool ViewState::Update(vtkRenderer* renderer, const PipelineScene& scene,
   renderer->GetTiledSizeAndOrigin(
     &this->ViewportSize[0], &this->ViewportSize[1], &origin[0], &origin[1]);
   vtkMatrix4x4::Invert(camera->GetModelViewTransformMatrix(), this->EyeToWorld);
-  const glsl::View view = continues ? this->Scene.View : scene.View;
+  const ViewGeometry view = continues ? this->Scene.View : scene.View;
   this->Scene = scene;
   this->Scene.View = view;
   this->HasScene = true;

@@ -32,7 +32,7 @@ Obstacles FindObstacles(vtkRenderer* renderer, vtkVolume* volume);
 
 /// Whether rays have the same hits in both. Cameras are compared with a relative tolerance of 1e-7
 /// (vtkWindowToImageFilter perturbs the view angle by rounding), everything else exactly.
-bool HasSameHits(const glsl::View& a, const glsl::View& b);
+bool HasSameHits(const ViewGeometry& a, const ViewGeometry& b);
 
 class ViewState
 {

@@ -12,9 +12,9 @@ namespace glsl
 using uint = std::uint32_t;
 using vec3 = float[3];
 using mat3 = float[3][4]; // columns
-using dvec3 = double[3];
 using ivec2 = std::int32_t[2];
 using ivec3 = std::int32_t[3];
+using uvec3 = std::uint32_t[3];
 
 #include "Shaders/Shared/Constants.glsl.h"
 

@@ -14,9 +14,8 @@ layout(location = 0) out vec4 fragmentColor;
 // 24 of the bits of VTK's number of the cell that holds the point at parameter t.
 vec3 CellColor(uint pixel, float t, int part)
 {
-  Ray ray = CameraRay(pixel);
   ivec3 cells = volume.Samples - 1;
-  ivec3 at = ivec3(floor(ray.Origin + double(t) * ray.Direction));
+  ivec3 at = PlaceAt(LineOf(pixel), AtDepth(t)).High;
   uvec3 cell = uvec3(clamp(at, ivec3(0), cells - 1));
   uint row = cell.y + uint(cells.y) * cell.z;
   uint high, low, carry;

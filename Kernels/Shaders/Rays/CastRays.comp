@@ -43,7 +43,7 @@ bool FindHit(Ray ray, inout ivec3 block, out Hit hit)
 uint CastRay(uint pixel, bool isNew)
 {
   Ray ray = CameraRay(pixel);
-  if (!(ray.Enter <= ray.Leave))
+  if (Misses(ray))
   {
     return DONE;
   }
@@ -55,7 +55,7 @@ uint CastRay(uint pixel, bool isNew)
   bool isHit = hit.Key != NO_HIT;
   if (isHit)
   {
-    StoreHit(pixel, hit, float(HitT(ray, hit.Key)));
+    StoreHit(pixel, hit, DepthAt(HitT(hit.Key)));
   }
   if (waits || (isHit && RAYS_CONTINUE))
   {

@@ -38,7 +38,7 @@ bool TakeBlock(Ray ray, inout ivec3 block, inout GridCursor at, inout bool insid
 // By the lane that has the hit.
 void KeepHit(Ray ray, uint pixel, ivec3 block, Hit hit)
 {
-  StoreHit(pixel, hit, float(HitT(ray, hit.Key)));
+  StoreHit(pixel, hit, DepthAt(HitT(hit.Key)));
   if (RAYS_CONTINUE)
   {
     StoreBlockOfRay(pixel, BlockIndex(block));

@@ -1,117 +1,242 @@
 // Camera rays, and the parameters t of the voxel planes that they cross: t orders all they meet.
-// A plane's t is one formula of the ray and the plane's integer index, in double precision. Every
-// stage in every pass therefore finds the same t for the same plane, and neighbouring cells share
-// their face's t to the last bit. Nothing accumulates and nothing is derived back from t, so that
-// the state of a ray is just the block that it is in.
+// It is a whole number: on each axis the planes' parameters are First + index * Spacing, exactly.
+// Every stage in every pass, on every GPU, therefore finds the same t for the same plane, and
+// neighbouring cells share their face's. Nothing is derived back from t, so that the state of a ray
+// is just the block that it is in.
 
 #include "Shared/Scene.glsl"
+#include "Shared/Wide.glsl"
 #include "Surface/Hits.glsl"
+
+// A ray in index space, in fixed point of 32 bits behind the point.
+struct RayLine
+{
+  Wide3 Origin; // at t = 0
+  Wide3 Way;    // from there to t = 2^WAY_BITS
+};
 
 struct Ray
 {
-  dvec3 Origin;    // index space
-  dvec3 Direction; // index space, per unit of t
-  dvec3 Inverse;   // 1 / direction; finite and huge where the ray is parallel to the planes
-  ivec3 Step;      // +1 or -1
-  double Enter, Leave; // parameters between which the ray is in the part that is drawn
+  Wide3 First;      // parameters of the planes with index 0,
+  Wide3 Spacing;    // and from each plane to the next
+  vec3 CellsPerT;   // not negative
+  vec3 Begin;       // place in the first cell at Enter, from 0 to 1 in the direction of the ray
+  ivec3 FirstCell;  // at Enter, but for planes that it lies on
+  ivec3 Step;       // +1 or -1
+  Wide Enter, Leave; // parameters between which the ray is in the part that is drawn
 };
 
+const Wide WAY = Wide(1 << (WAY_BITS - 32), 0u);
+// Planes of which not two are met: any spacing from here on is as good.
+const Wide WIDEST_SPACING = Wide(1 << (WAY_BITS - 31), 0u);
+// Behind the way's end, by half of it: a plane there is never met.
+const Wide NEVER_MET = Wide(3 << (WAY_BITS - 33), 0u);
+// Beyond all that a ray is compared with, and no sum of two wraps.
+const Wide FARTHEST = Wide(1 << 29, 0u);
+
 // Parameters at which a ray crosses the plane with this index on each axis.
-dvec3 PlanesT(Ray ray, ivec3 index)
+Wide3 PlanesT(Ray ray, ivec3 index)
 {
-  precise dvec3 t = (dvec3(index) - ray.Origin) * ray.Inverse;
-  return t;
-}
-
-double SmallestOf(dvec3 v)
-{
-  return min(v.x, min(v.y, v.z));
-}
-
-double LargestOf(dvec3 v)
-{
-  return max(v.x, max(v.y, v.z));
-}
-
-// Keeps planes finite to which a ray is parallel: it never reaches those ahead, and crossed those
-// behind long ago.
-double FiniteInverse(double d)
-{
-  return abs(d) > 1e-290LF ? 1.0LF / d : 1e290LF;
+  return Sum(ray.First, Product(ray.Spacing, uvec3(index)));
 }
 
 // Pixels are numbered in rows from the bottom left.
-dvec2 PixelCentre(uint pixel)
+uvec2 PixelPlace(uint pixel)
 {
   uint width = uint(view.ImageSize.x);
-  return dvec2(double(pixel % width), double(pixel / width)) + 0.5LF;
+  return uvec2(pixel % width, pixel / width);
+}
+
+// So many times what is gained for each half pixel.
+Wide3 GainOf(ivec3 high, uvec3 low, uvec3 least, uint halves)
+{
+  uvec3 carried, unused;
+  umulExtended(least, uvec3(halves), carried, unused);
+  return Sum(Product(Wide3(high, low), uvec3(halves)), Wide3(ivec3(0), carried));
+}
+
+Wide3 AtPixel(FixedPixelVector vector, uvec2 place)
+{
+  uvec2 halves = 2u * place + 1u;
+  Wide3 x = GainOf(vector.PerXHigh, vector.PerXLow, vector.PerXLeast, halves.x);
+  Wide3 y = GainOf(vector.PerYHigh, vector.PerYLow, vector.PerYLeast, halves.y);
+  return Sum(Wide3(vector.BaseHigh, vector.BaseLow), Sum(x, y));
+}
+
+RayLine LineOf(uint pixel)
+{
+  uvec2 place = PixelPlace(pixel);
+  return RayLine(AtPixel(view.RayOrigin, place), AtPixel(view.RayWay, place));
+}
+
+// How fast coordinates change along a ray, for the parameters at which they reach a value.
+struct Speed
+{
+  ivec3 Backwards; // -1 where a coordinate falls, else 0
+  Wide3 Inverse;   // 2^(126 - Zeros) / the absolute way
+  ivec3 Zeros;     // leading ones of the absolute way
+};
+
+Speed SpeedOf(Wide3 way)
+{
+  Speed speed;
+  speed.Backwards = way.High >> 31;
+  Wide3 absolute = Negated(way, speed.Backwards);
+  // a plane to which the ray is parallel is met beyond all others
+  absolute.Low |= uvec3(AreEqual(absolute, Wide(0, 0u)));
+  speed.Zeros = LeadingZeros(absolute);
+  speed.Inverse = Reciprocal(ShiftLeft(absolute, speed.Zeros));
+  return speed;
+}
+
+// Parameters at which coordinates have changed by so much, FARTHEST at most.
+Wide3 ReachedAt(Speed speed, Wide3 change)
+{
+  ivec3 before = (change.High >> 31) ^ speed.Backwards;
+  Wide3 scaled = HighProduct(Negated(change, change.High >> 31), speed.Inverse);
+  ivec3 bits = speed.Zeros - (126 - 64 - WAY_BITS);
+  ivec3 far = -ivec3(lessThan(LeadingZeros(scaled) - bits, ivec3(3)));
+  Wide3 t = ShiftRight(ShiftLeft(scaled, max(bits, ivec3(0))), max(-bits, ivec3(0)));
+  return Negated(Choose(t, AllOf(FARTHEST), far), before);
+}
+
+// From a plane of voxels to the next.
+Wide3 SpacingOf(Speed speed)
+{
+  const int bits = 126 - 32 - WAY_BITS;
+  Wide3 spacing = ShiftRight(speed.Inverse, clamp(bits - speed.Zeros, 0, 63));
+  ivec3 wide = -ivec3(greaterThan(speed.Zeros, ivec3(32))); // less than half a cell on all the way
+  return Choose(spacing, AllOf(WIDEST_SPACING), wide);
+}
+
+Wide3 ChangeToPlanes(RayLine line, ivec3 index)
+{
+  return Difference(Wide3(index, uvec3(0u)), line.Origin);
+}
+
+// The place of a ray at a parameter from 0 to 2^WAY_BITS.
+Wide3 PlaceAt(RayLine line, Wide t)
+{
+  const int bits = 63 - WAY_BITS; // 64 would be one too many at the end of the way
+  Wide scaled = Wide(t.High << bits | int(t.Low >> (32 - bits)), t.Low << bits);
+  ivec3 negative = line.Way.High >> 31;
+  Wide3 halfOfGain = HighProduct(Negated(line.Way, negative), AllOf(scaled));
+  return Sum(line.Origin, Negated(ShiftLeft(halfOfGain, ivec3(1)), negative));
+}
+
+// Within a cell, from 0 to 1 between its planes.
+vec3 PlaceInCell(Wide3 place, ivec3 cell)
+{
+  return clamp(vec3(place.High - cell) + vec3(place.Low) * (1.0 / TWO_TO_32), 0.0, 1.0);
 }
 
 #ifdef CLIPPED
-void ClipRay(inout Ray ray)
+void ClipRay(inout Ray ray, uint pixel)
 {
-  for (int i = 0; i < view.NumberOfClippingPlanes; ++i)
+  uvec2 place = PixelPlace(pixel);
+  for (int i = 0; 3 * i < view.NumberOfClippingPlanes; ++i)
   {
-    ClippingPlane plane = view.ClippingPlanes[i];
-    precise double at = dot(plane.Normal, ray.Origin) + plane.Offset;
-    precise double along = dot(plane.Normal, ray.Direction);
-    precise double t = -at * FiniteInverse(along);
-    ray.Enter = along > 0.0LF ? max(ray.Enter, t) : ray.Enter;
-    ray.Leave = along < 0.0LF ? min(ray.Leave, t) : ray.Leave;
-    ray.Leave = along == 0.0LF && at < 0.0LF ? ray.Enter - 1.0LF : ray.Leave;
+    Wide3 distance = AtPixel(view.ClippingOrigin[i], place);
+    Speed speed = SpeedOf(AtPixel(view.ClippingWay[i], place));
+    Wide3 t = ReachedAt(speed, Difference(Wide3(ivec3(0), uvec3(0u)), distance));
+    Wide3 enter = Choose(t, AllOf(ray.Enter), speed.Backwards);
+    Wide3 leave = Choose(AllOf(ray.Leave), t, speed.Backwards);
+    ray.Enter = LargerOf(ray.Enter, LargestOf(enter));
+    ray.Leave = SmallerOf(ray.Leave, SmallestOf(leave));
   }
 }
 #endif
 
+// ---- depths along the view direction
+float DepthAt(Wide t)
+{
+  return view.FirstDepth + view.DepthOfWay * (ToFloat(t) * (1.0 / ToFloat(WAY)));
+}
+
+Wide AtDepth(float depth)
+{
+  float way = clamp((depth - view.FirstDepth) / view.DepthOfWay, 0.0, 1.0);
+  return ToWide(way * ToFloat(WAY));
+}
+
 #if defined(OBSTRUCTED) && defined(BUFFER_HITS)
 // Parameter at which a ray meets opaque geometry that has this depth in the window.
-double ObstacleT(float depth)
+Wide ObstacleT(float depth)
 {
-  double z = 2.0LF * double(depth) - 1.0LF;
-  return (double(look.ClipZ) - z * double(look.ClipW)) /
-    (z * double(look.ClipWPerT) - double(look.ClipZPerT));
+  precise float z = 2.0 * depth - 1.0;
+  precise float above = look.ClipZ - z * look.ClipW;
+  precise float below = z * look.ClipWPerT - look.ClipZPerT;
+  return AtDepth(above / below);
 }
 #endif
 
-// The ray through the centre of a pixel.
+// The planes between which a ray is drawn: those that it meets first, and those that it meets last.
+void FindEnds(RayLine line, Speed speed, inout Ray ray)
+{
+  ivec3 first = Choose(view.FirstDrawn, view.LastDrawn, speed.Backwards);
+  ivec3 last = Choose(view.LastDrawn, view.FirstDrawn, speed.Backwards);
+  Wide3 enter = ReachedAt(speed, ChangeToPlanes(line, first));
+  Wide3 leave = ReachedAt(speed, ChangeToPlanes(line, last));
+  ray.Enter = LargerOf(Wide(0, 0u), LargestOf(enter));
+  ray.Leave = SmallerOf(WAY, SmallestOf(leave));
+}
+
+// Places the planes of all cells, from those through which the ray leaves its first cell.
+void PlacePlanes(RayLine line, Speed speed, inout Ray ray)
+{
+  Wide3 place = PlaceAt(line, ray.Enter);
+  ray.FirstCell = clamp(place.High, view.FirstDrawn, view.LastDrawn - 1);
+  vec3 begin = PlaceInCell(place, ray.FirstCell);
+  ray.Begin = mix(begin, 1.0 - begin, notEqual(speed.Backwards, ivec3(0)));
+  ivec3 next = ray.FirstCell + (1 + ray.Step) / 2;
+  Wide3 spacing = SpacingOf(speed);
+  Wide3 at = ReachedAt(speed, ChangeToPlanes(line, next));
+  at = SmallerOf(SmallerOf(at, Sum(AllOf(ray.Enter), spacing)), AllOf(NEVER_MET));
+  at = LargerOf(at, AllOf(ray.Enter)); // whatever the rounding: the ray is in its first cell
+  ray.Spacing = Negated(spacing, speed.Backwards);
+  ray.First = Difference(at, Product(ray.Spacing, uvec3(next)));
+}
+
+// The ray through the centre of a pixel. It misses what is drawn if it leaves before it enters.
 Ray CameraRay(uint pixel)
 {
-  dvec2 at = PixelCentre(pixel);
+  RayLine line = LineOf(pixel);
+  Speed speed = SpeedOf(line.Way);
   Ray ray;
-  precise dvec3 origin =
-    view.RayOrigin.Base + at.x * view.RayOrigin.PerX + at.y * view.RayOrigin.PerY;
-  precise dvec3 direction =
-    view.RayDirection.Base + at.x * view.RayDirection.PerX + at.y * view.RayDirection.PerY;
-  ray.Origin = origin;
-  ray.Direction = direction;
-  ray.Inverse =
-    dvec3(FiniteInverse(direction.x), FiniteInverse(direction.y), FiniteInverse(direction.z));
-  ray.Step = 1 - 2 * ivec3(lessThan(direction, dvec3(0.0LF)));
-  dvec3 first = PlanesT(ray, view.FirstDrawn);
-  dvec3 last = PlanesT(ray, view.LastDrawn);
-  ray.Enter = max(LargestOf(min(first, last)), view.NearDistance);
-  ray.Leave = min(SmallestOf(max(first, last)), view.FarDistance);
+  ray.Step = 1 + 2 * speed.Backwards;
+  ray.CellsPerT = abs(ToFloat(line.Way)) * (1.0 / TWO_TO_32) * (1.0 / ToFloat(WAY));
+  FindEnds(line, speed, ray);
 #ifdef CLIPPED
-  ClipRay(ray);
+  ClipRay(ray, pixel);
 #endif
 #if defined(OBSTRUCTED) && defined(BUFFER_HITS)
-  ray.Leave = min(ray.Leave, ObstacleT(ObstacleOf(pixel)));
+  ray.Leave = SmallerOf(ray.Leave, ObstacleT(ObstacleOf(pixel)));
 #endif
+  PlacePlanes(line, speed, ray);
   return ray;
 }
 
+bool Misses(Ray ray)
+{
+  return view.HasRays == 0 || IsLess(ray.Leave, ray.Enter);
+}
+
 // The same ray in view coordinates, where the surface is lit.
+vec2 PixelCentre(uint pixel)
+{
+  return vec2(PixelPlace(pixel)) + 0.5;
+}
+
 vec3 EyeRayOrigin(uint pixel)
 {
-  dvec2 at = PixelCentre(pixel);
-  return vec3(view.EyeOrigin.Base + at.x * view.EyeOrigin.PerX + at.y * view.EyeOrigin.PerY);
+  vec2 at = PixelCentre(pixel);
+  return view.EyeOrigin.Base + at.x * view.EyeOrigin.PerX + at.y * view.EyeOrigin.PerY;
 }
 
 vec3 EyeRayDirection(uint pixel)
 {
-  dvec2 at = PixelCentre(pixel);
-  return vec3(
-    view.EyeDirection.Base + at.x * view.EyeDirection.PerX + at.y * view.EyeDirection.PerY);
+  vec2 at = PixelCentre(pixel);
+  return view.EyeDirection.Base + at.x * view.EyeDirection.PerX + at.y * view.EyeDirection.PerY;
 }
 
 // ---- tile order: pixels in square tiles, so that neighbours in a work group are neighbours in the
@@ -154,16 +279,19 @@ uint Speculation(uint rays)
   return clamp(blocks, 1u, cache.SpeculationLimit);
 }
 
-// ---- hit keys: the place between Enter and Leave in fixed point
-uint HitKey(Ray ray, double t)
+// ---- hit keys: the upper bits of the parameter
+uint HitKey(Wide t)
 {
-  precise double extent = ray.Leave - ray.Enter;
-  precise double fraction =
-    extent > 0.0LF ? clamp((t - ray.Enter) / extent, 0.0LF, 1.0LF) : 0.0LF;
-  return uint(fraction * HIT_STEPS);
+  Wide last = Difference(WAY, Wide(0, 1u));
+  Wide at = SmallerOf(LargerOf(t, Wide(0, 0u)), last);
+  const int bits = WAY_BITS - KEY_BITS;
+  uint key = uint(at.High) << (32 - bits) | at.Low >> bits;
+  return min(key, NO_HIT - 1u);
 }
 
-double HitT(Ray ray, uint key)
+// The middle of the parameters that have this key.
+Wide HitT(uint key)
 {
-  return ray.Enter + (double(key) + 0.5LF) / HIT_STEPS * (ray.Leave - ray.Enter);
+  const int bits = WAY_BITS - KEY_BITS;
+  return Wide(int(key >> (32 - bits)), key << bits | 1u << (bits - 1));
 }

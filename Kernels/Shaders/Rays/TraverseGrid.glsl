@@ -25,14 +25,14 @@ ivec3 ExitPlanes(Ray ray, ivec3 element, int side)
   return (element + (1 + ray.Step) / 2) * side;
 }
 
-double BlockEntry(Ray ray, ivec3 block)
+Wide BlockEntry(Ray ray, ivec3 block)
 {
-  return max(ray.Enter, LargestOf(PlanesT(ray, EntryPlanes(ray, block, BLOCK_SIDE))));
+  return LargerOf(ray.Enter, LargestOf(PlanesT(ray, EntryPlanes(ray, block, BLOCK_SIDE))));
 }
 
-double BlockExit(Ray ray, ivec3 block)
+Wide BlockExit(Ray ray, ivec3 block)
 {
-  return min(ray.Leave, SmallestOf(PlanesT(ray, ExitPlanes(ray, block, BLOCK_SIDE))));
+  return SmallerOf(ray.Leave, SmallestOf(PlanesT(ray, ExitPlanes(ray, block, BLOCK_SIDE))));
 }
 
 // Tells whether a range has a value below the isovalue and one that is not.
@@ -61,41 +61,28 @@ bool StraddlesAnyIsovalue(float low, float high)
 }
 
 // The step to the next block on each axis on which the ray leaves this one by parameter t.
-ivec3 StepBy(Ray ray, ivec3 block, double t)
+ivec3 StepBy(Ray ray, ivec3 block, Wide t)
 {
-  dvec3 exits = PlanesT(ray, ExitPlanes(ray, block, BLOCK_SIDE));
-  return ivec3(lessThanEqual(exits, dvec3(t))) * ray.Step;
+  return NotGreater(PlanesT(ray, ExitPlanes(ray, block, BLOCK_SIDE)), t) * ray.Step;
 }
 
-// The block in which the ray enters the volume. Rounding may put the first guess into a neighbour;
-// the planes correct it.
+// The block in which the ray enters the volume.
 ivec3 FirstBlock(Ray ray)
 {
-  ivec3 last = LastCellBlock();
-  dvec3 p = ray.Origin + ray.Enter * ray.Direction;
-  ivec3 block = ivec3(clamp(floor(p / double(BLOCK_SIDE)), dvec3(0.0LF), dvec3(last)));
-  for (int i = 0; i < 2; ++i)
-  {
-    dvec3 entries = PlanesT(ray, EntryPlanes(ray, block, BLOCK_SIDE));
-    block -= ivec3(greaterThan(entries, dvec3(ray.Enter))) * ray.Step;
-  }
-  for (int i = 0; i < 2; ++i)
-  {
-    block += StepBy(ray, block, ray.Enter);
-  }
-  return clamp(block, ivec3(0), last);
+  ivec3 block = BlockOf(ray.FirstCell);
+  return clamp(block + StepBy(ray, block, ray.Enter), ivec3(0), LastCellBlock());
 }
 
 // Moves to the next block on the ray; false if the ray leaves the volume.
 bool NextBlock(Ray ray, inout ivec3 block)
 {
-  dvec3 exits = PlanesT(ray, ExitPlanes(ray, block, BLOCK_SIDE));
-  double t = SmallestOf(exits);
-  if (t >= ray.Leave)
+  Wide3 exits = PlanesT(ray, ExitPlanes(ray, block, BLOCK_SIDE));
+  Wide t = SmallestOf(exits);
+  if (!IsLess(t, ray.Leave))
   {
     return false;
   }
-  block += ivec3(lessThanEqual(exits, dvec3(t))) * ray.Step;
+  block += NotGreater(exits, t) * ray.Step;
   return InGrid(block);
 }
 
@@ -104,9 +91,9 @@ bool NextBlock(Ray ray, inout ivec3 block)
 bool SkipMacrocell(Ray ray, inout ivec3 block)
 {
   ivec3 macrocell = MacrocellOf(block);
-  dvec3 exits = PlanesT(ray, ExitPlanes(ray, macrocell, BLOCK_SIDE * MACROCELL_SIDE));
-  double t = SmallestOf(exits);
-  if (t >= ray.Leave)
+  Wide3 exits = PlanesT(ray, ExitPlanes(ray, macrocell, BLOCK_SIDE * MACROCELL_SIDE));
+  Wide t = SmallestOf(exits);
+  if (!IsLess(t, ray.Leave))
   {
     return false;
   }
@@ -117,16 +104,22 @@ bool SkipMacrocell(Ray ray, inout ivec3 block)
   }
   // on the axes on which the ray leaves the macrocell: the block just behind it
   ivec3 behind = MACROCELL_SIDE * macrocell - 1 + (MACROCELL_SIDE + 1) * (1 + ray.Step) / 2;
-  block = within + (behind - within) * ivec3(lessThanEqual(exits, dvec3(t)));
+  block = within + (behind - within) * NotGreater(exits, t);
   return InGrid(block);
 }
 
 #ifdef CROPPED
-// Number of the cropping region that holds a point, in vtkVolumeMapper's order.
-int CroppingRegion(dvec3 point)
+// 1 on each axis on which a place in a cell lies beyond the plane, else 0.
+ivec3 IsBeyond(CellPlanes planes, ivec3 cell, vec3 place)
 {
-  ivec3 side =
-    ivec3(greaterThan(point, view.CroppingLow)) + ivec3(greaterThan(point, view.CroppingHigh));
+  return ivec3(greaterThan(cell, planes.Cell)) |
+    (ivec3(equal(cell, planes.Cell)) & ivec3(greaterThan(place, planes.Place)));
+}
+
+// Number of the cropping region that holds a place in a cell, in vtkVolumeMapper's order.
+int CroppingRegion(ivec3 cell, vec3 place)
+{
+  ivec3 side = IsBeyond(view.CroppingLow, cell, place) + IsBeyond(view.CroppingHigh, cell, place);
   return side.x + 3 * side.y + 9 * side.z;
 }
 
@@ -138,8 +131,9 @@ bool IsRegionDrawn(int region)
 // Tells whether one region that is not drawn holds the whole block.
 bool IsCroppedAway(ivec3 block)
 {
-  int region = CroppingRegion(dvec3(BLOCK_SIDE * block));
-  return region == CroppingRegion(dvec3(BLOCK_SIDE * block + BLOCK_SIDE)) && !IsRegionDrawn(region);
+  ivec3 first = BLOCK_SIDE * block;
+  int region = CroppingRegion(first, vec3(0.0));
+  return region == CroppingRegion(first + BLOCK_SIDE, vec3(0.0)) && !IsRegionDrawn(region);
 }
 #endif
 

@@ -8,14 +8,14 @@
 
 struct BlockVisit
 {
-  double Enter, Leave; // parameters
-  ivec3 Reach;         // into the next blocks
+  Wide Enter, Leave; // parameters
+  ivec3 Reach;       // into the next blocks
 };
 
 BlockVisit PlanVisit(Ray ray, ivec3 block)
 {
-  double enter = BlockEntry(ray, block);
-  double leave = BlockExit(ray, block);
+  Wide enter = BlockEntry(ray, block);
+  Wide leave = BlockExit(ray, block);
   return BlockVisit(enter, leave, DualGridReach(ray, block, enter, leave));
 }
 

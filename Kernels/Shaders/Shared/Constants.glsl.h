@@ -37,8 +37,10 @@ const uint CLAIMED = 0xFFFFFFFEu;   // in this dispatch a macrocell's map page i
 const uint NO_HIT = 0xFFFFFFFFu;    // hit key of a ray that has met no surface
 const uint NO_NORMAL = 0x80008000u; // not found yet; no packed normal has these bits
 
-// Hit keys are places on a ray's way through the volume, in so many steps.
-const double HIT_STEPS = double(0xFFFFFF00u);
+// A ray's parameter counts from 0, where rays begin to be drawn, to 2^WAY_BITS, where they end.
+// Seven bits are left above for planes beyond, and a hit's key has the upper KEY_BITS.
+const int WAY_BITS = 57;
+const int KEY_BITS = 32;
 
 // Rays ask for blocks ahead of them: a ray for at most so many in a pass, and for one more for each
 // so many pixels that it has to itself; the rays of a work group for at most so many together.

@@ -7,19 +7,44 @@
 // A vector that is Base + x PerX + y PerY at the pixel's centre (x, y).
 struct PixelVector
 {
-  dvec3 Base;
-  double Padding0;
-  dvec3 PerX;
-  double Padding1;
-  dvec3 PerY;
-  double Padding2;
+  vec3 Base;
+  float Padding0;
+  vec3 PerX;
+  float Padding1;
+  vec3 PerY;
+  float Padding2;
 };
 
-// In index space; the surface is drawn at p where dot(Normal, p) + Offset >= 0.
-struct ClippingPlane
+// The same in fixed point: Base and what is gained for each half pixel, of which the first pixel's
+// centre has one. Words of 32 bits before the point and behind it; those of the gains go on, so
+// that no sum of thousands is off.
+struct FixedPixelVector
 {
-  dvec3 Normal;
-  double Offset;
+  ivec3 BaseHigh;
+  int Padding0;
+  uvec3 BaseLow;
+  int Padding1;
+  ivec3 PerXHigh;
+  int Padding2;
+  uvec3 PerXLow;
+  int Padding3;
+  uvec3 PerXLeast;
+  int Padding4;
+  ivec3 PerYHigh;
+  int Padding5;
+  uvec3 PerYLow;
+  int Padding6;
+  uvec3 PerYLeast;
+  int Padding7;
+};
+
+// Where a plane cuts the axes of cells: the cell, and the place in it from 0 to 1.
+struct CellPlanes
+{
+  ivec3 Cell;
+  int Padding0;
+  vec3 Place;
+  float Padding1;
 };
 
 // A number as the sum of two floats.
@@ -34,19 +59,17 @@ struct FloatSum
 // What decides which hits rays have: any change restarts the image. From the mapper.
 UNIFORM_BLOCK(View, VIEW_BINDING)
 {
-  PixelVector RayOrigin; // index space; a ray's parameter t is the depth along the view direction
-  PixelVector RayDirection;
-  PixelVector EyeOrigin; // the same in view coordinates
-  PixelVector EyeDirection;
-  double NearDistance; // clipping range of the camera
-  double FarDistance;
-  double Padding0;
-  double Padding1;
-  ClippingPlane ClippingPlanes[MAX_CLIPPING_PLANES];
-  dvec3 CroppingLow; // index space: the planes that part the volume into 3^3 regions
-  double Padding2;
-  dvec3 CroppingHigh;
-  double Padding3;
+  // In index space, where rays begin to be drawn, and their way from there to where they end.
+  FixedPixelVector RayOrigin;
+  FixedPixelVector RayWay;
+  PixelVector EyeOrigin; // view coordinates; a ray's depth along the view direction times
+  PixelVector EyeDirection; // its direction leads from its origin to a point
+  CellPlanes CroppingLow; // the planes that part the volume into 3^3 regions
+  CellPlanes CroppingHigh;
+  // Distances from clipping planes, of the first three and so on, the components of a vector: at
+  // the origins, and what is gained on the way. The surface is drawn where none is negative.
+  FixedPixelVector ClippingOrigin[(MAX_CLIPPING_PLANES + 2) / 3];
+  FixedPixelVector ClippingWay[(MAX_CLIPPING_PLANES + 2) / 3];
   ivec3 FirstDrawn; // samples between which the surface is drawn; beyond, they only give normals
   int NumberOfIsovalues;
   ivec3 LastDrawn;
@@ -54,9 +77,9 @@ UNIFORM_BLOCK(View, VIEW_BINDING)
   ivec2 ImageSize;
   ivec2 ImageOrigin; // in the window
   int DrawnRegions;  // a bit for each cropping region
-  int Padding4;
-  int Padding5;
-  int Padding6;
+  int HasRays;       // 0: no ray meets what is drawn
+  float FirstDepth;  // of the origins
+  float DepthOfWay;
   FloatSum Isovalues[MAX_ISOVALUES]; // in the units of the stream
 }
 INSTANCE(view);

@@ -27,9 +27,9 @@
 
 #if defined(LIT) || defined(COLORED)
 // Finds the normal, and the colour's value. Returns true if they have to wait for blocks.
-bool FindNormal(Ray ray, uint pixel, out vec3 normal)
+bool FindNormal(uint pixel, out vec3 normal)
 {
-  SurfacePoint hit = PointOf(ray, HitKeyOf(pixel));
+  SurfacePoint hit = PointOf(LineOf(pixel), HitKeyOf(pixel));
   ivec3 first = BlockOf(FirstStencilSample(hit.Cell));
   ivec3 reach = BlockOf(LastStencilSample(hit.Cell)) - first;
   uint missing = FindSlots(first, reach);
@@ -56,22 +56,21 @@ bool FindNormal(Ray ray, uint pixel, out vec3 normal)
 uint FinishHit(uint pixel)
 {
   vec3 normal = vec3(0.0);
-  Ray ray = CameraRay(pixel);
 #if defined(LIT) || defined(COLORED)
-  if (FindNormal(ray, pixel, normal))
+  if (FindNormal(pixel, normal))
   {
     return WAITS;
   }
 #endif
   Hit hit = HitOf(pixel);
-  vec3 color = Shade(pixel, float(HitT(ray, hit.Key)), normal, hit.Isovalue);
+  vec3 color = Shade(pixel, DepthAt(HitT(hit.Key)), normal, hit.Isovalue);
   return AddLayer(pixel, color, look.Colors[hit.Isovalue].Opacity) ? CONTINUES : DONE;
 }
 #else
 uint FinishHit(uint pixel)
 {
   vec3 normal;
-  bool waits = FindNormal(CameraRay(pixel), pixel, normal);
+  bool waits = FindNormal(pixel, normal);
 #ifdef HAS_NORMALS
   if (!waits)
   {

@@ -11,13 +11,16 @@
 #include BLOCK_ACCESS
 
 // Cell of the block in which the ray is at parameter t: it has crossed all planes up to t.
-ivec3 CellAt(Ray ray, ivec3 block, double t)
+ivec3 CellAt(Ray ray, ivec3 block, Wide t)
 {
   ivec3 entry = EntryPlanes(ray, block, BLOCK_SIDE);
+  Wide3 spacing = Negated(ray.Spacing, ray.Step >> 31);
+  Wide3 plane = PlanesT(ray, entry);
   ivec3 crossed = ivec3(0);
   for (int i = 1; i < BLOCK_SIDE; ++i)
   {
-    crossed += ivec3(lessThanEqual(PlanesT(ray, entry + i * ray.Step), dvec3(t)));
+    plane = Sum(plane, spacing);
+    crossed += NotGreater(plane, t);
   }
   return entry - (1 - ray.Step) / 2 + crossed * ray.Step;
 }
@@ -91,19 +94,37 @@ bool IsVisible(uvec2 hidden, ivec3 cell)
 #endif
 }
 
-// Coordinates in the cell's unit cube at parameter t; exact on the faces that the ray is crossing.
-vec3 LocalCoordinates(Ray ray, ivec3 cell, double t, bvec3 onFace, bool leaving)
+// A ray's way through a cell: between parameters, and places in the cell's unit cube.
+struct CellPath
 {
-  precise dvec3 p = ray.Origin + t * ray.Direction - dvec3(cell);
-  vec3 u = clamp(vec3(p), vec3(0.0), vec3(1.0));
-  vec3 face = vec3((leaving ? 1 + ray.Step : 1 - ray.Step) / 2);
-  return mix(u, face, onFace);
+  ivec3 Cell;
+  Wide T0, T1;
+  vec3 U0, U1;
+};
+
+// The place in a cell at parameter t, in the direction of the ray: from the planes through which it
+// has entered the cell, or on the axes on which it has not left its first cell from its beginning.
+vec3 PlaceAlong(Ray ray, Wide3 entries, Wide t)
+{
+  vec3 sinceEntry = ToFloat(Difference(AllOf(t), entries)) * ray.CellsPerT;
+  vec3 sinceBegin = ray.Begin + ToFloat(Difference(t, ray.Enter)) * ray.CellsPerT;
+  bvec3 inFirst = lessThan(Difference(entries, AllOf(ray.Enter)).High, ivec3(0));
+  return clamp(mix(sinceEntry, sinceBegin, inFirst), 0.0, 1.0);
 }
 
-double HitBetween(double t0, double t1, float s)
+// From t0 to t1, which both lie in the cell; exact on the faces that the ray crosses there.
+CellPath PathThrough(Ray ray, ivec3 cell, Wide t0, Wide t1, Wide3 exits)
 {
-  precise double t = t0 + double(s) * (t1 - t0);
-  return t;
+  Wide3 entries = PlanesT(ray, EntryPlanes(ray, cell, 1));
+  vec3 u0 = mix(PlaceAlong(ray, entries, t0), vec3(0.0), AreEqual(entries, t0));
+  vec3 u1 = mix(PlaceAlong(ray, entries, t1), vec3(1.0), AreEqual(exits, t1));
+  bvec3 backwards = lessThan(ray.Step, ivec3(0));
+  return CellPath(cell, t0, t1, mix(u0, 1.0 - u0, backwards), mix(u1, 1.0 - u1, backwards));
+}
+
+Wide HitBetween(CellPath path, float s)
+{
+  return Sum(path.T0, ToWide(s * ToFloat(Difference(path.T1, path.T0))));
 }
 
 // Hits have an order along the ray: by their keys, and of one key by their isovalues.
@@ -126,51 +147,46 @@ void PassLastHit(uint pixel)
 
 #ifdef MANY_CROSSINGS
 // A crossing is no hit if it lies in a region that is not drawn, or not behind the last hit.
-Hit Crossing(Ray ray, double t0, double t1, float s, int isovalue)
+Hit Crossing(CellPath path, float s, int isovalue)
 {
-  double t = HitBetween(t0, t1, s);
-  Hit hit = Hit(HitKey(ray, t), isovalue);
+  Hit hit = Hit(HitKey(HitBetween(path, s)), isovalue);
   bool counts = s >= 0.0;
 #ifdef TRANSLUCENT
   counts = counts && (lastHit.Key == NO_HIT || Before(lastHit, hit));
 #endif
 #ifdef CROPPED
-  counts = counts && IsRegionDrawn(CroppingRegion(ray.Origin + t * ray.Direction));
+  counts = counts && IsRegionDrawn(CroppingRegion(path.Cell, mix(path.U0, path.U1, s)));
 #endif
   return counts ? hit : MISS;
 }
 #endif
 
-// First hit of a surface between parameters t0 and t1, along which the interpolant is this cubic.
-Hit FirstHit(Ray ray, vec4 cubic, double t0, double t1, int isovalue)
+// First hit of a surface on the path, along which the interpolant is this cubic.
+Hit FirstHit(CellPath path, vec4 cubic, int isovalue)
 {
 #ifdef MANY_CROSSINGS
   vec3 s = Transitions(cubic);
-  Hit hit = Crossing(ray, t0, t1, s.x, isovalue);
-  hit = hit.Key == NO_HIT ? Crossing(ray, t0, t1, s.y, isovalue) : hit;
-  return hit.Key == NO_HIT ? Crossing(ray, t0, t1, s.z, isovalue) : hit;
+  Hit hit = Crossing(path, s.x, isovalue);
+  hit = hit.Key == NO_HIT ? Crossing(path, s.y, isovalue) : hit;
+  return hit.Key == NO_HIT ? Crossing(path, s.z, isovalue) : hit;
 #else
   float s = FirstTransition(cubic);
-  return s >= 0.0 ? Hit(HitKey(ray, HitBetween(t0, t1, s)), isovalue) : MISS;
+  return s >= 0.0 ? Hit(HitKey(HitBetween(path, s)), isovalue) : MISS;
 #endif
 }
 
-// First hit of the ray in the cell between parameters t0 and t1; false if there is none.
-bool IntersectCell(Ray ray, ivec3 cell, Corners w, double t0, double t1, dvec3 exits, out Hit hit)
+// First hit on the path; false if there is none.
+bool IntersectCell(CellPath path, Corners w, out Hit hit)
 {
-  bvec3 entering = equal(PlanesT(ray, EntryPlanes(ray, cell, 1)), dvec3(t0));
-  bvec3 leaving = equal(exits, dvec3(t1));
-  vec3 u0 = LocalCoordinates(ray, cell, t0, entering, false);
-  vec3 u1 = LocalCoordinates(ray, cell, t1, leaving, true);
 #ifdef SEVERAL_ISOVALUES
   hit = MISS;
   for (int i = 0; i < view.NumberOfIsovalues; ++i)
   {
-    Hit other = FirstHit(ray, CubicAlong(Excess(w, i), u0, u1), t0, t1, i);
+    Hit other = FirstHit(path, CubicAlong(Excess(w, i), path.U0, path.U1), i);
     hit = Before(other, hit) ? other : hit;
   }
 #else
-  hit = FirstHit(ray, CubicAlong(w, u0, u1), t0, t1, 0);
+  hit = FirstHit(path, CubicAlong(w, path.U0, path.U1), 0);
 #endif
   return hit.Key != NO_HIT;
 }
@@ -178,7 +194,7 @@ bool IntersectCell(Ray ray, ivec3 cell, Corners w, double t0, double t1, dvec3 e
 // First hit of the ray in the block between parameters t0 and end; false if there is none. The walk
 // to the next cell that the surface crosses is a loop of its own, so that the lanes of a group meet
 // again for the costly part.
-bool IntersectBlock(Ray ray, ivec3 block, double t0, double end, out Hit hit)
+bool IntersectBlock(Ray ray, ivec3 block, Wide t0, Wide end, out Hit hit)
 {
   hit = MISS;
   ivec3 cell = CellAt(ray, block, t0);
@@ -186,31 +202,34 @@ bool IntersectBlock(Ray ray, ivec3 block, double t0, double end, out Hit hit)
   for (int tested = 0; tested < 16; ++tested) // a ray crosses at most 10 cells of 4^3
   {
     Corners w;
-    dvec3 exits;
-    double t1;
+    Wide3 exits;
+    Wide t1;
+    bool last;
     bool crossed = false;
     for (int walked = 0; walked < 16; ++walked)
     {
       exits = PlanesT(ray, ExitPlanes(ray, cell, 1));
-      t1 = min(SmallestOf(exits), end);
+      t1 = SmallestOf(exits);
+      last = !IsLess(t1, end);
       w = LoadCorners(cell);
       crossed = HoldsSurface(w) && IsVisible(hidden, cell);
-      if (crossed || t1 >= end)
+      if (crossed || last)
       {
         break;
       }
-      cell += ivec3(lessThanEqual(exits, dvec3(t1))) * ray.Step;
+      cell += NotGreater(exits, t1) * ray.Step;
       t0 = t1;
     }
-    if (crossed && IntersectCell(ray, cell, w, t0, t1, exits, hit))
+    t1 = SmallerOf(t1, end);
+    if (crossed && IntersectCell(PathThrough(ray, cell, t0, t1, exits), w, hit))
     {
       return true;
     }
-    if (!crossed || t1 >= end)
+    if (!crossed || last)
     {
       return false;
     }
-    cell += ivec3(lessThanEqual(exits, dvec3(t1))) * ray.Step;
+    cell += NotGreater(exits, t1) * ray.Step;
     t0 = t1;
   }
   return false;

@@ -16,12 +16,12 @@ struct SurfacePoint
 };
 
 // From the key alone, so that it is the same in whichever pass the normal is found.
-SurfacePoint PointOf(Ray ray, uint key)
+SurfacePoint PointOf(RayLine line, uint key)
 {
-  dvec3 p = ray.Origin + HitT(ray, key) * ray.Direction;
+  Wide3 place = PlaceAt(line, HitT(key));
   SurfacePoint hit;
-  hit.Cell = ivec3(clamp(floor(p), dvec3(0.0LF), dvec3(volume.Samples - 2)));
-  hit.Local = clamp(vec3(p - dvec3(hit.Cell)), vec3(0.0), vec3(1.0));
+  hit.Cell = clamp(place.High, ivec3(0), volume.Samples - 2);
+  hit.Local = PlaceInCell(place, hit.Cell);
   return hit;
 }
 
