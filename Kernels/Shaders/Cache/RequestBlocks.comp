@@ -49,20 +49,17 @@ void RequestMissing()
   }
 }
 
-void main()
+// Asks for what so many rays wait for.
+void RequestFor(uint first, uint rays, uint speculation)
 {
-  // no looking ahead if there is no room for what is needed now
-  uint speculation =
-    control.Frontier < PixelsInTiles() ? 1u : Speculation(control.NextWaitingRays);
-  uint raysPerGroup = min(GROUP_SIZE, GROUP_BLOCKS_AHEAD / speculation);
-  uint index = raysPerGroup * gl_WorkGroupID.x + gl_LocalInvocationIndex;
   if (gl_LocalInvocationIndex == 0u)
   {
     aheadCount = 0u;
   }
   OpenRequests();
   barrier();
-  if (gl_LocalInvocationIndex < raysPerGroup && index < control.NextWaitingRays)
+  uint index = first + gl_LocalInvocationIndex;
+  if (gl_LocalInvocationIndex < rays && index < control.NextWaitingRays)
   {
     uint pixel = NextRay(index);
     if (!BehindFrontier(pixel))
@@ -73,4 +70,18 @@ void main()
   barrier();
   RequestMissing();
   CloseRequests();
+  barrier();
+}
+
+void main()
+{
+  // no looking ahead if there is no room for what is needed now
+  uint speculation =
+    control.Frontier < PixelsInTiles() ? 1u : Speculation(control.NextWaitingRays);
+  uint rays = RaysPerRequestGroup(speculation);
+  for (uint first = rays * gl_WorkGroupID.x; first < control.NextWaitingRays;
+       first += rays * gl_NumWorkGroups.x)
+  {
+    RequestFor(first, rays, speculation);
+  }
 }

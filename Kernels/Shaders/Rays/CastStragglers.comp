@@ -85,6 +85,7 @@ bool CastRay(uint pixel)
     {
       return firstHit == GROUP_SIZE;
     }
+    barrier(); // all have read the first lanes before any finds others
   }
   return false;
 }

@@ -104,14 +104,10 @@ void RecordFirstLive(uint order)
   }
 }
 
-// Groups of RequestBlocks that it takes for so many rays: by their number, or by what they look
-// ahead at most. See `raysPerGroup` there.
-uint RequestGroupsFor(uint rays)
+// Rays that a group of RequestBlocks takes at a time, of which each looks so many blocks ahead.
+uint RaysPerRequestGroup(uint speculation)
 {
-  const uint leastRays = GROUP_BLOCKS_AHEAD / uint(MAX_SPECULATION);
-  const uint pixels = GROUP_BLOCKS_AHEAD * PIXELS_PER_BLOCK_AHEAD;
-  return max(GroupsOf(rays, REQUEST_BLOCKS_GROUP_SIZE),
-    min(GroupsOf(rays, leastRays), ImagePixels() / pixels + 1u));
+  return min(REQUEST_BLOCKS_GROUP_SIZE, GROUP_BLOCKS_AHEAD / speculation);
 }
 
 // Takes places in the next pass's queue for rays of which `first` is the least tile order.
@@ -119,7 +115,8 @@ uint ReserveNextRays(uint count, uint first)
 {
   RecordFirstLive(first);
   uint at = atomicAdd(control.NextWaitingRays, count);
-  atomicMax(control.RequestGroups.X, min(RequestGroupsFor(at + count), MAX_GROUPS));
+  uint groups = GroupsOf(at + count, RaysPerRequestGroup(Speculation(at + count)));
+  atomicMax(control.RequestGroups.X, min(groups, MAX_GROUPS));
   return at;
 }
 
