@@ -74,6 +74,12 @@ bool BehindFrontier(uint pixel)
   return control.Frontier < PixelsInTiles() && TileOrderOf(pixel) >= control.Frontier;
 }
 
+// Rays that a group of RequestBlocks takes at a time, of which each looks so many blocks ahead.
+uint RaysPerRequestGroup(uint speculation)
+{
+  return min(REQUEST_BLOCKS_GROUP_SIZE, GROUP_BLOCKS_AHEAD / speculation);
+}
+
 #ifdef WRITES_RAYS
 void StoreBlockOfRay(uint pixel, uint block)
 {
@@ -102,12 +108,6 @@ void RecordFirstLive(uint order)
   {
     atomicMin(control.FirstLive, order);
   }
-}
-
-// Rays that a group of RequestBlocks takes at a time, of which each looks so many blocks ahead.
-uint RaysPerRequestGroup(uint speculation)
-{
-  return min(REQUEST_BLOCKS_GROUP_SIZE, GROUP_BLOCKS_AHEAD / speculation);
 }
 
 // Takes places in the next pass's queue for rays of which `first` is the least tile order.

@@ -170,15 +170,16 @@ Wide ObstacleT(float depth)
 }
 #endif
 
-// The planes between which a ray is drawn: those that it meets first, and those that it meets last.
-void FindEnds(RayLine line, Speed speed, inout Ray ray)
+// The planes through which a ray leaves what is drawn.
+ivec3 LastPlanes(Speed speed)
 {
-  ivec3 first = Choose(view.FirstDrawn, view.LastDrawn, speed.Backwards);
-  ivec3 last = Choose(view.LastDrawn, view.FirstDrawn, speed.Backwards);
-  Wide3 enter = ReachedAt(speed, ChangeToPlanes(line, first));
-  Wide3 leave = ReachedAt(speed, ChangeToPlanes(line, last));
-  ray.Enter = LargerOf(Wide(0, 0u), LargestOf(enter));
-  ray.Leave = SmallerOf(WAY, SmallestOf(leave));
+  return Choose(view.LastDrawn, view.FirstDrawn, speed.Backwards);
+}
+
+Wide EnterT(RayLine line, Speed speed)
+{
+  ivec3 planes = Choose(view.FirstDrawn, view.LastDrawn, speed.Backwards);
+  return LargerOf(Wide(0, 0u), LargestOf(ReachedAt(speed, ChangeToPlanes(line, planes))));
 }
 
 // Places the planes of all cells, from those through which the ray leaves its first cell.
@@ -197,6 +198,14 @@ void PlacePlanes(RayLine line, Speed speed, inout Ray ray)
   ray.First = Difference(at, Product(ray.Spacing, uvec3(next)));
 }
 
+// Where those of the last planes are met that are: by the planes' own formula, so that no cell
+// behind them is entered.
+Wide LastT(Ray ray, Speed speed, Wide3 ends)
+{
+  ivec3 met = Difference(ends, AllOf(NEVER_MET)).High >> 31; // others' parameters wrap
+  return SmallestOf(Choose(ends, PlanesT(ray, LastPlanes(speed)), met));
+}
+
 // The ray through the centre of a pixel. It misses what is drawn if it leaves before it enters.
 Ray CameraRay(uint pixel)
 {
@@ -205,14 +214,18 @@ Ray CameraRay(uint pixel)
   Ray ray;
   ray.Step = 1 + 2 * speed.Backwards;
   ray.CellsPerT = abs(ToFloat(line.Way)) * (1.0 / TWO_TO_32) * (1.0 / ToFloat(WAY));
-  FindEnds(line, speed, ray);
+  ray.Enter = EnterT(line, speed);
+  ray.Leave = WAY;
 #ifdef CLIPPED
   ClipRay(ray, pixel);
 #endif
 #if defined(OBSTRUCTED) && defined(BUFFER_HITS)
   ray.Leave = SmallerOf(ray.Leave, ObstacleT(ObstacleOf(pixel)));
 #endif
+  Wide3 ends = ReachedAt(speed, ChangeToPlanes(line, LastPlanes(speed)));
+  bool misses = IsLess(SmallerOf(ray.Leave, SmallestOf(ends)), ray.Enter);
   PlacePlanes(line, speed, ray);
+  ray.Leave = misses ? Wide(-1, 0u) : SmallerOf(ray.Leave, LastT(ray, speed, ends));
   return ray;
 }
 
