@@ -30,7 +30,7 @@ struct ViewGeometry
   PixelVector RayDirection;
   PixelVector EyeOrigin; ///< the same in view coordinates
   PixelVector EyeDirection;
-  double Depth[4]; ///< of a point p of index space: dot(the first three, p) + the fourth
+  double Depth[4];     ///< of a point p of index space: dot(the first three, p) + the fourth
   double NearDistance; ///< clipping range of the camera
   double FarDistance;
   ClippingPlane ClippingPlanes[glsl::MAX_CLIPPING_PLANES];

@@ -64,8 +64,8 @@ Obstacles FindObstacles(vtkRenderer* renderer, vtkVolume* volume)
 bool HasSameHits(const ViewGeometry& a, const ViewGeometry& b)
 {
   ViewGeometry exact = b; // with a's camera, once that is found nearly the same
-  for (auto vector : { &ViewGeometry::RayOrigin, &ViewGeometry::RayDirection, &ViewGeometry::EyeOrigin,
-         &ViewGeometry::EyeDirection })
+  for (auto vector : { &ViewGeometry::RayOrigin, &ViewGeometry::RayDirection,
+         &ViewGeometry::EyeOrigin, &ViewGeometry::EyeDirection })
   {
     if (!NearlySame(a.*vector, b.*vector))
     {

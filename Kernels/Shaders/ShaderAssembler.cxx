@@ -238,9 +238,9 @@ const std::vector<std::string>& RequiredExtensions()
 {
   static const std::vector<std::string> names = { "GL_ARB_arrays_of_arrays",
     "GL_ARB_clear_buffer_object", "GL_ARB_compute_shader", "GL_ARB_explicit_attrib_location",
-    "GL_ARB_gpu_shader5", "GL_ARB_shader_bit_encoding",
-    "GL_ARB_shader_image_load_store", "GL_ARB_shader_storage_buffer_object",
-    "GL_ARB_shading_language_420pack", "GL_ARB_shading_language_packing", "GL_ARB_timer_query" };
+    "GL_ARB_gpu_shader5", "GL_ARB_shader_bit_encoding", "GL_ARB_shader_image_load_store",
+    "GL_ARB_shader_storage_buffer_object", "GL_ARB_shading_language_420pack",
+    "GL_ARB_shading_language_packing", "GL_ARB_timer_query" };
   return names;
 }
 

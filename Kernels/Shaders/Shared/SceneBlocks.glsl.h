@@ -62,9 +62,9 @@ UNIFORM_BLOCK(View, VIEW_BINDING)
   // In index space, where rays begin to be drawn, and their way from there to where they end.
   FixedPixelVector RayOrigin;
   FixedPixelVector RayWay;
-  PixelVector EyeOrigin; // view coordinates; a ray's depth along the view direction times
+  PixelVector EyeOrigin;    // view coordinates; a ray's depth along the view direction times
   PixelVector EyeDirection; // its direction leads from its origin to a point
-  CellPlanes CroppingLow; // the planes that part the volume into 3^3 regions
+  CellPlanes CroppingLow;   // the planes that part the volume into 3^3 regions
   CellPlanes CroppingHigh;
   // Distances from clipping planes, of the first three and so on, the components of a vector: at
   // the origins, and what is gained on the way. The surface is drawn where none is negative.
