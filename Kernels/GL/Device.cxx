@@ -86,6 +86,20 @@ bool Device::IsReady(Urgency urgency)
     stages.begin(), stages.end(), [this](Stage stage) { return this->IsReady(stage); });
 }
 
+bool Device::CompileNext(Urgency urgency)
+{
+  for (const Stage stage : ProgramsOf(urgency, this->Needs))
+  {
+    if (!this->Programs->HasGiven(stage, this->Needs) && this->Gl.GetStatus())
+    {
+      GLuint program = 0;
+      const Status built = this->Programs->Get(stage, this->Needs, program);
+      return built || this->Gl.Fail(built);
+    }
+  }
+  return false;
+}
+
 std::vector<ProgramTime> Device::GetProgramTimes() const
 {
   return this->Programs ? this->Programs->GetTimes(this->Needs) : std::vector<ProgramTime>();

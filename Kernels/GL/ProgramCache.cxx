@@ -125,10 +125,18 @@ bool ProgramCache::IsReady(Stage stage, const SceneNeeds& needs)
     {
       SetComplete(program);
       // Mesa has the extension in common, but not every driver of it has the threads
-      this->InBackground = stopwatch.GetMilliseconds() < LongestRequest;
+      const double waited = stopwatch.GetMilliseconds();
+      this->InBackground = waited < LongestRequest;
+      program.Time.WaitedMilliseconds += this->InBackground ? 0.0 : waited;
     }
   }
   return program.Complete || !this->InBackground;
+}
+
+bool ProgramCache::HasGiven(Stage stage, const SceneNeeds& needs) const
+{
+  const auto found = this->Programs.find({ stage, needs.GetBits() });
+  return found != this->Programs.end() && found->second->Shaders.empty();
 }
 
 Status ProgramCache::Get(Stage stage, const SceneNeeds& needs, GLuint& name)
@@ -139,7 +147,7 @@ Status ProgramCache::Get(Stage stage, const SceneNeeds& needs, GLuint& name)
   if (!program.Shaders.empty())
   {
     built = this->Check(program);
-    program.Time.WaitedMilliseconds = waiting.GetMilliseconds();
+    program.Time.WaitedMilliseconds += waiting.GetMilliseconds();
   }
   name = program.Name;
   if (!built)

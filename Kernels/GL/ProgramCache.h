@@ -48,6 +48,8 @@ public:
   /// Can the scene's stage run without a wait? It is requested if need be. Without a compiler in
   /// the background the answer is always yes, as nothing is won by putting the stage off.
   bool IsReady(Stage stage, const SceneNeeds& needs);
+  /// Has a scene's stage been given to somebody?
+  bool HasGiven(Stage stage, const SceneNeeds& needs) const;
   /// Gives a scene's stage; waits until it is compiled.
   Status Get(Stage stage, const SceneNeeds& needs, GLuint& program);
   /// Of those programs of a scene that are compiled, in the order of the table.

@@ -420,14 +420,32 @@ void ProgressivePipeline::FreeForPlan(bool reload)
 bool ProgressivePipeline::AwaitPrograms(double milliseconds)
 {
   const Stopwatch stopwatch;
-  while (!this->Gpu->IsReady(Urgency::AtOnce))
+  while (this->AwaitsPrograms())
   {
     if (stopwatch.GetMilliseconds() >= milliseconds)
     {
       return false;
     }
-    std::this_thread::sleep_for(PollingInterval);
   }
+  return true;
+}
+
+// Goes on compiling for a moment. Returns whether some programs may still be lacking.
+bool ProgressivePipeline::AwaitsPrograms()
+{
+  if (this->Gpu->Gl.GetLimits().Software)
+  {
+    return false;
+  }
+  if (!this->Gpu->CompilesInBackground())
+  {
+    return this->Gpu->CompileNext(Urgency::AtOnce);
+  }
+  if (this->Gpu->IsReady(Urgency::AtOnce))
+  {
+    return false;
+  }
+  std::this_thread::sleep_for(PollingInterval);
   return true;
 }
 

@@ -54,9 +54,10 @@ public:
   /// error where the budget or the GPU has no room. `newImage`: the last image is not to go on.
   Status SetScene(const PipelineScene& scene, const PipelineSettings& settings, bool newImage);
 
-  /// Waits until the programs that any picture needs are compiled, but no longer than so many
-  /// milliseconds. Returns false if they are not. Where the driver compiles nothing in the
-  /// background it does not wait: stages compile when they first run.
+  /// Waits until the programs that any picture needs are compiled, but not much longer than so many
+  /// milliseconds: where the driver compiles nothing in the background, for one of them at least.
+  /// Returns false if some are not. A software renderer compiles when a stage first runs: it does
+  /// not wait.
   bool AwaitPrograms(double milliseconds);
   /// Prepares the volume once it is loaded: decodes it if it is to be decoded whole, and finds the
   /// values' range in each block. Waits for the programs.
@@ -128,6 +129,7 @@ private:
   void UploadCacheBlock();
   std::uint32_t ChoosePixelsPerStraggler();
   void UseReadyPrograms();
+  bool AwaitsPrograms();
   void ClearImage();
   void RunPass();
   void RunStage(Stage stage);

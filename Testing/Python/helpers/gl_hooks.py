@@ -6,6 +6,7 @@ Something is put between VTK or the mapper and the functions they call.
 import contextlib
 import ctypes
 import pathlib
+import time
 
 import numpy as np
 import vtkmodules
@@ -95,10 +96,12 @@ def intercepted(name, replacement):
 class Compiler:
     """A GPU's driver that compiles in the background, for as long as a test likes.
 
-    `held` are the stages that it has not finished, `linked` those that it was given.
+    `held` are the stages that it has not finished, `linked` those that it was given. If it is
+    `slow` it only says that it compiles in the background, and takes so many seconds each time.
     """
 
     def __init__(self):
+        self.slow = 0.0
         self.held, self.linked, self._asked = set(), [], set()
         self._hooks = contextlib.ExitStack()
         self._renderer = ctypes.create_string_buffer(b"a GPU")
@@ -130,10 +133,12 @@ class Compiler:
         self._asked.discard(program)
         self.linked.append(program_label(program))
         original(program)
+        time.sleep(self.slow)
 
     def _ask(self, original, program, what, answer):
         if what == COMPLETION_STATUS:
-            answer[0] = program in self._asked and program_label(program) not in self.held
+            known = program in self._asked or self.slow > 0
+            answer[0] = known and program_label(program) not in self.held
             self._asked.add(program)
         else:
             original(program, what, answer)

@@ -99,6 +99,25 @@ def test_a_watched_window_does_not_wait(image, compiler, expected, held, setting
     assert np.array_equal(scene.picture(), expected[0])
 
 
+@pytest.mark.parametrize("settings", [{}, CACHED], ids=["whole", "cached"])
+def test_a_driver_without_threads_is_found_out(image, compiler, expected, settings):
+    """It compiles a program a render, so that the window can be used in between."""
+    compiler.slow = 0.06
+    scene, timers = watched(compiler, image, TimeAllowance=0.002, **settings)
+    counts = []
+    for _ in range(4):
+        scene.window.Render()
+        counts.append(len(compiler.linked))
+        assert timers and scene.mapper.GetCompletedFraction() == 0
+    assert np.diff(counts).tolist() == [1, 1, 1]
+    timers[1:] = []
+    while timers:
+        fire(scene, timers)
+    assert scene.mapper.GetConverged() and scene.mapper.GetNumberOfGLErrors() == 0
+    assert np.array_equal(scene.picture(), expected[0])
+    assert "Select" not in compiler.linked
+
+
 def test_programs_of_later_clicks_compile_while_idle(image, compiler):
     """When a watched image is complete: Select, and the scene's stages with another feature."""
     scene, timers = watched(compiler, image, TimeAllowance=0.0, **CACHED)
