@@ -14,9 +14,10 @@
 namespace
 {
 constexpr int MaximumErrors = 16; // read in a row: a lost context never runs out of them
-constexpr std::int64_t SoftwareBuffer = 1LL << 30; // llvmpipe has no limit, whatever it reports
-constexpr GLenum DedicatedKibibytesNVX = 0x9047;   // GL_GPU_MEMORY_INFO_DEDICATED_VIDMEM_NVX
-constexpr GLenum FreeKibibytesATI = 0x87FB;        // GL_VBO_FREE_MEMORY_ATI: the total comes first
+constexpr std::int64_t SoftwareBuffer = 1LL << 30;   // llvmpipe has no limit, whatever it reports
+constexpr std::int64_t AddressableBytes = 1LL << 34; // by the 32 bits of a word's number
+constexpr GLenum DedicatedKibibytesNVX = 0x9047;     // GL_GPU_MEMORY_INFO_DEDICATED_VIDMEM_NVX
+constexpr GLenum FreeKibibytesATI = 0x87FB; // GL_VBO_FREE_MEMORY_ATI: the total comes first
 
 std::set<std::string> OfferedExtensions()
 {
@@ -123,8 +124,9 @@ void Context::AskLimits()
   this->Limits.DeviceMemory = AskDeviceMemory(offered);
   GLint64 largest = 0;
   glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &largest);
-  this->LargestAllowed =
-    this->Limits.Software ? SoftwareBuffer : static_cast<std::int64_t>(largest);
+  this->LargestAllowed = this->Limits.Software
+    ? SoftwareBuffer
+    : std::min(static_cast<std::int64_t>(largest), AddressableBytes);
   this->LimitBuffers(0);
 }
 

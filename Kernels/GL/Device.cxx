@@ -14,12 +14,20 @@ void SetSegment(GLuint program, const glsl::Segment& segment)
 {
   const std::pair<const char*, GLuint> members[] = { { "segment.FirstBlock", segment.FirstBlock },
     { "segment.Blocks", segment.Blocks }, { "segment.FirstBit", segment.FirstBit },
-    { "segment.Words", segment.Words }, { "segment.FirstMacrocell", segment.FirstMacrocell },
-    { "segment.Macrocells", segment.Macrocells } };
+    { "segment.Words", segment.Words } };
   for (const auto& member : members)
   {
     glUniform1ui(glGetUniformLocation(program, member.first), member.second);
   }
+}
+
+// See FoldedGroup in Scene.glsl.
+void DispatchFolded(std::int64_t groups)
+{
+  const std::int64_t most = glsl::MAX_GROUPS;
+  const GLuint x = static_cast<GLuint>(std::min(groups, most));
+  const GLuint y = static_cast<GLuint>((groups + most - 1) / most);
+  glDispatchCompute(x, y, 1);
 }
 }
 
@@ -149,12 +157,27 @@ void Device::Run(Stage stage, const std::vector<BoundSegment>& segments, const L
   this->Timer.EndStage();
 }
 
-void Device::Dispatch(Stage stage, std::int64_t groups, const std::vector<BoundSegment>& segments)
+void Device::Dispatch(Stage stage, std::int64_t groups)
 {
-  const std::int64_t most = glsl::MAX_GROUPS;
-  const GLuint x = static_cast<GLuint>(std::min(groups, most));
-  const GLuint y = static_cast<GLuint>((groups + most - 1) / most);
-  this->Run(stage, segments, [=](GLuint) { glDispatchCompute(x, y, 1); });
+  this->Run(stage, {}, [=](GLuint) { DispatchFolded(groups); });
+}
+
+void Device::DispatchSlice(
+  Stage stage, std::int64_t groups, const VolumeSlice& slice, const BoundSegment* segment)
+{
+  std::vector<BoundSegment> segments;
+  if (segment)
+  {
+    segments.push_back(*segment);
+  }
+  this->Run(stage, segments,
+    [=](GLuint program)
+    {
+      glUniform2ui(glGetUniformLocation(program, "slice"), static_cast<GLuint>(slice.First),
+        static_cast<GLuint>(slice.End));
+      DispatchFolded(groups);
+    });
+  glFinish();
 }
 
 void Device::DispatchIndirect(

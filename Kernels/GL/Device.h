@@ -19,11 +19,19 @@
 #include <memory>
 #include <vector>
 
-/// A part of a compressed stream as a stage sees it.
+/// Macrocells or blocks: see VolumeSlice.glsl.
+struct VolumeSlice
+{
+  std::int64_t First = 0;
+  std::int64_t End = 0; ///< behind the last
+};
+
+/// A part of a compressed stream as a stage sees it, and the macrocells whose blocks it holds.
 struct BoundSegment
 {
   GLuint Buffer;
   glsl::Segment Place;
+  VolumeSlice Macrocells;
 };
 
 /// What Select.frag draws: a prop's colour, or 24 bits of the id of the cell that was hit.
@@ -72,10 +80,14 @@ public:
 
   ///@{ Runs a stage with so many work groups, or as many as the control block says at an offset. A
   /// stage that reads a stream runs once for each of its segments. Nothing runs after an error.
-  void Dispatch(Stage stage, std::int64_t groups, const std::vector<BoundSegment>& segments = {});
+  void Dispatch(Stage stage, std::int64_t groups);
   void DispatchIndirect(
     Stage stage, std::size_t controlOffset, const std::vector<BoundSegment>& segments = {});
   ///@}
+  /// Runs a stage with so many work groups on a part of a whole volume, of which a segment of the
+  /// stream holds the blocks (null: the stage reads no stream), and waits until it is done.
+  void DispatchSlice(
+    Stage stage, std::int64_t groups, const VolumeSlice& slice, const BoundSegment* segment);
   /// Draws the viewport with a stage, and leaves no binding behind.
   void Draw(Stage stage, const SelectedId* selected = nullptr);
 

@@ -7,6 +7,7 @@
 #include "GL/UniformBuffers.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace
 {
@@ -96,6 +97,42 @@ MemoryPlan PlanMemory(
   plan.LeastBudget = settings.DecodeWholeVolume ? std::min(leastCached, wholeBytes) : leastCached;
   plan.MaximumSlots = LimitSlots(limits, plan.Budget, scene);
   return plan;
+}
+
+Status CheckSizes(const DeviceLimits& limits, const SceneNeeds& scene)
+{
+  constexpr std::int64_t mostBlocks = glsl::CLAIMED; // this number and the next mean no block
+  if (scene.Blocks > mostBlocks)
+  {
+    return Status::Error("the volume has ", scene.Blocks, " blocks of 4x4x4 samples, but only ",
+      mostBlocks, " can be told apart: show a part of it, or fewer samples");
+  }
+  const BufferInfo& macrocells = PipelineBuffers()[static_cast<std::size_t>(Buffer::Macrocells)];
+  const std::int64_t bytes = macrocells.Bytes(scene);
+  if (bytes > limits.LargestBuffer)
+  {
+    const std::int64_t most = limits.LargestBuffer / (bytes / scene.Macrocells);
+    return Status::Error("the volume has ", scene.Macrocells,
+      " cells of 16x16x16 samples, but one GPU buffer can hold no more than ", most, " here (",
+      limits.LargestBuffer, " bytes): show a part of it, or fewer samples");
+  }
+  const std::int64_t least = LeastSlots(scene) * BytesPerSlot(scene);
+  if (least > limits.LargestBuffer)
+  {
+    return Status::Error("the smallest cache has ", least,
+      " bytes, but one GPU buffer can hold no more than ", limits.LargestBuffer,
+      " here: raise LargestBuffer, or use another GPU");
+  }
+  return Status();
+}
+
+Status CheckBudget(const MemoryPlan& plan)
+{
+  return !plan.Cached || plan.MaximumSlots > 0
+    ? Status()
+    : Status::Error("the memory budget of ", plan.Budget,
+        " bytes is too small: this volume at this image size needs at least ", plan.LeastBudget,
+        " bytes beside the compressed stream");
 }
 
 SceneNeeds WithCache(const SceneNeeds& scene, std::int64_t slots)

@@ -8,6 +8,8 @@
 #include "Pipeline/PipelineSettings.h"
 #include "Shaders/BufferTable.h"
 
+#include "Status.h"
+
 #include <cstdint>
 
 struct MemoryPlan
@@ -29,6 +31,12 @@ MemoryPlan PlanMemory(
 SceneNeeds WithCache(const SceneNeeds& scene, std::int64_t slots);
 SceneNeeds WithWholeVolume(const SceneNeeds& scene);
 ///@}
+
+/// An error where the volume is larger than numbers of blocks or one buffer of the GPU can be, or
+/// one buffer cannot hold the smallest cache: no budget helps.
+Status CheckSizes(const DeviceLimits& limits, const SceneNeeds& scene);
+/// An error where the plan's budget is too small.
+Status CheckBudget(const MemoryPlan& plan);
 
 /// The scene with addresses reserved for a cache of any size, where the GPU can do that and the
 /// volume needs more than a small one.

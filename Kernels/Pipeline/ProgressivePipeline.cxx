@@ -14,6 +14,7 @@
 
 namespace
 {
+constexpr std::int64_t FirstSlice = 256;          // macrocells
 constexpr std::int64_t MaximumResetGroups = 4096; // each resets many slots where there are more
 // Where fewer than one pixel of so many has a live ray, each ray gets a work group.
 constexpr std::uint32_t PixelsPerStraggler = 32;
@@ -151,8 +152,7 @@ const Status& ProgressivePipeline::PrepareVolume()
   {
     this->DecodeWholeVolume();
   }
-  this->Gpu->Dispatch(
-    Stage::BlockRanges, this->Needs.Macrocells, this->Streams.GetSegments(Stage::BlockRanges));
+  this->RunOnVolume(Stage::BlockRanges);
   this->Gpu->Timer.EndPreparation();
   this->VolumePrepared = this->GetStatus().IsOk();
   return this->GetStatus();
@@ -164,11 +164,48 @@ void ProgressivePipeline::DecodeWholeVolume()
   {
     if (InfoOf(stage).IsNeeded(Moment::Volume, this->Needs))
     {
-      this->Gpu->Dispatch(
-        stage, GroupsFor(stage, this->Needs.Slots), this->Streams.GetSegments(stage));
+      this->RunOnVolume(stage);
     }
   }
   this->Streams.Free();
+}
+
+// Runs a stage on the macrocells of the volume, a work group each, or on its blocks, an invocation
+// each: by slices, those of a segment of the stream after those of another.
+void ProgressivePipeline::RunOnVolume(Stage stage)
+{
+  const bool macrocells = stage == Stage::BlockRanges;
+  SliceSize size(macrocells ? FirstSlice : FirstSlice * glsl::BLOCKS_PER_MACROCELL);
+  const std::vector<BoundSegment>& segments = this->Streams.GetSegments(stage);
+  if (segments.empty())
+  {
+    this->RunSlices(
+      stage, { 0, macrocells ? this->Needs.Macrocells : this->Needs.Blocks }, nullptr, size);
+  }
+  for (const BoundSegment& segment : segments)
+  {
+    const std::int64_t firstBlock = segment.Place.FirstBlock;
+    const VolumeSlice blocks = { firstBlock, firstBlock + segment.Place.Blocks };
+    this->RunSlices(stage, macrocells ? segment.Macrocells : blocks, &segment, size);
+  }
+}
+
+void ProgressivePipeline::RunSlices(
+  Stage stage, const VolumeSlice& all, const BoundSegment* segment, SliceSize& size)
+{
+  for (std::int64_t first = all.First; first < all.End && this->GetStatus();)
+  {
+    const VolumeSlice slice = { first, std::min(first + size.Get(), all.End) };
+    const std::int64_t items = slice.End - slice.First;
+    const std::int64_t groups = stage == Stage::BlockRanges ? items : GroupsFor(stage, items);
+    const Stopwatch stopwatch;
+    this->Gpu->DispatchSlice(stage, groups, slice, segment);
+    if (items == size.Get()) // the last one may be small, and its time say little
+    {
+      size.Record(stopwatch.GetMilliseconds());
+    }
+    first = slice.End;
+  }
 }
 
 Status ProgressivePipeline::DecodeVolume(std::vector<float>& values)
@@ -375,11 +412,10 @@ Status ProgressivePipeline::MakeRoom(bool newImage)
   const DeviceLimits& limits = this->Gpu->Gl.GetLimits();
   this->Needs = WithReservation(limits, this->Needs);
   this->Plan = PlanMemory(limits, this->Settings, this->Needs);
-  if (this->Plan.Cached && this->Plan.MaximumSlots == 0)
+  const Status sizes = CheckSizes(limits, WithCache(this->Needs, 0));
+  if (const Status checked = sizes ? CheckBudget(this->Plan) : sizes; !checked)
   {
-    return this->Gpu->Gl.Fail(Status::Error("the memory budget of ", this->Plan.Budget,
-      " bytes is too small: this volume at this image size needs at least ", this->Plan.LeastBudget,
-      " bytes beside the compressed stream"));
+    return this->Gpu->Gl.Fail(checked);
   }
   const bool reload = !this->VolumeLoaded || this->Plan.Cached != this->Needs.Cached;
   this->FreeForPlan(reload);

@@ -19,6 +19,7 @@
 #include "Pipeline/PipelineScene.h"
 #include "Pipeline/PipelineSettings.h"
 #include "Pipeline/PipelineVolume.h"
+#include "Pipeline/SliceSize.h"
 #include "Store/StreamStore.h"
 
 #include <functional>
@@ -121,6 +122,8 @@ private:
   Status LoadVolume();
   Status UploadVolume();
   void DecodeWholeVolume();
+  void RunOnVolume(Stage stage);
+  void RunSlices(Stage stage, const VolumeSlice& all, const BoundSegment* segment, SliceSize& size);
   Status MakeCache(bool newImage);
   void RemakeCache(std::int64_t slots);
   void GrowCache(std::int64_t slots, bool ahead);

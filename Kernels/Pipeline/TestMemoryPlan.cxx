@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 namespace
@@ -272,5 +273,64 @@ TEST(MemoryPlan, OtherCacheGrowsWhileTheBudgetHasRoomForACopy)
     const CacheGrowth anew = PlanGrowth(plan, WithCache(scene, half), plan.MaximumSlots);
     EXPECT_FALSE(anew.Keeps);
     EXPECT_EQ(anew.Slots, plan.MaximumSlots);
+  }
+}
+
+TEST(MemoryPlan, NumbersOfBlocksHaveAnEnd)
+{
+  DeviceLimits limits = Limits();
+  limits.LargestBuffer = 1LL << 50;
+  SceneNeeds scene = Scene(1024);
+  scene.Blocks = 4294967294;
+  EXPECT_TRUE(CheckSizes(limits, scene));
+  ++scene.Blocks;
+  const Status status = CheckSizes(limits, scene);
+  EXPECT_FALSE(status);
+  EXPECT_EQ(status.GetMessage(),
+    "the volume has 4294967295 blocks of 4x4x4 samples, but only 4294967294 can be told apart: "
+    "show "
+    "a part of it, or fewer samples");
+}
+
+TEST(MemoryPlan, MacrocellsMustFitOneBuffer)
+{
+  const SceneNeeds scene = Scene(1024);
+  DeviceLimits limits = Limits();
+  limits.LargestBuffer = BytesOf(Lifetime::Volume, scene);
+  EXPECT_TRUE(CheckSizes(limits, scene));
+  --limits.LargestBuffer;
+  const Status status = CheckSizes(limits, scene);
+  EXPECT_FALSE(status);
+  EXPECT_NE(
+    status.GetMessage().find("262144 cells of 16x16x16 samples, but one GPU buffer can hold "
+                             "no more than 262143 here"),
+    std::string::npos)
+    << status.GetMessage();
+}
+
+TEST(MemoryPlan, ABufferTooSmallForTheCacheIsNoSmallBudget)
+{
+  SceneNeeds scene = Scene(64);
+  DeviceLimits limits = Limits();
+  limits.LargestBuffer = 2048 * 256;
+  EXPECT_TRUE(CheckSizes(limits, scene));
+  EXPECT_TRUE(CheckBudget(PlanMemory(limits, WithBudget(GiB, false), scene)));
+  --limits.LargestBuffer;
+  const Status status = CheckSizes(limits, scene);
+  EXPECT_FALSE(status);
+  EXPECT_EQ(status.GetMessage(),
+    "the smallest cache has 524288 bytes, but one GPU buffer can hold no more than 524287 here: "
+    "raise LargestBuffer, or use another GPU");
+}
+
+TEST(MemoryPlan, NoBudgetMakesSlotsNegative)
+{
+  const SceneNeeds scene = Scene(1024);
+  for (const std::int64_t budget : { std::int64_t(1), BytesWithCache(scene, 0) - 1 })
+  {
+    const MemoryPlan plan = PlanMemory(Limits(), WithBudget(budget), scene);
+    EXPECT_EQ(plan.MaximumSlots, 0);
+    EXPECT_TRUE(plan.Cached);
+    EXPECT_FALSE(CheckBudget(plan));
   }
 }

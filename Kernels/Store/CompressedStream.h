@@ -6,8 +6,6 @@
 
 #include "Shaders/Glsl.h"
 
-#include "Shaders/Glsl.h"
-
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -41,7 +39,6 @@ struct VolumeSize
   std::int64_t GetNumberOfMacrocells() const { return Product(this->Macrocells); }
 
 private:
-  static std::int64_t DivideUp(std::int64_t n, std::int64_t side) { return (n + side - 1) / side; }
   static std::int64_t Parts(std::int64_t length, std::int64_t side)
   {
     return (length + side - 1) / side;

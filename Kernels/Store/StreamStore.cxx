@@ -8,13 +8,13 @@ namespace
 {
 BoundSegment Describe(GLuint buffer, const StreamSegment& segment)
 {
-  BoundSegment bound = { buffer, {} };
+  BoundSegment bound = { buffer, {}, {} };
   bound.Place.FirstBlock = segment.FirstBlock;
   bound.Place.Blocks = segment.Blocks;
   bound.Place.FirstBit = segment.FirstBit;
   bound.Place.Words = static_cast<std::uint32_t>(segment.Bytes / 4);
-  bound.Place.FirstMacrocell = segment.FirstMacrocell;
-  bound.Place.Macrocells = segment.Macrocells;
+  bound.Macrocells.First = segment.FirstMacrocell;
+  bound.Macrocells.End = bound.Macrocells.First + segment.Macrocells;
   return bound;
 }
 }

@@ -14,6 +14,7 @@
 #include "Store/ZFPDecode.glsl"
 #endif
 #include "Store/HiddenCells.glsl"
+#include "Store/VolumeSlice.glsl"
 
 const int GRID = BLOCK_SIDE * MACROCELL_SIDE + 1; // samples of a macrocell's cells on an axis
 const uint LOADED_SIDE = uint(MACROCELL_SIDE) + 1u; // blocks on an axis that hold them
@@ -174,15 +175,6 @@ void StoreRanges(uint macrocell)
   }
 }
 
-uvec2 MacrocellsOfDispatch()
-{
-#ifdef BUFFER_STREAM
-  return uvec2(segment.FirstMacrocell, segment.FirstMacrocell + segment.Macrocells);
-#else
-  return uvec2(0u, volume.NumberOfMacrocells);
-#endif
-}
-
 ivec3 MacrocellCoordinates(uint macrocell)
 {
   uint width = uint(volume.Macrocells.x);
@@ -192,9 +184,8 @@ ivec3 MacrocellCoordinates(uint macrocell)
 
 void main()
 {
-  uvec2 range = MacrocellsOfDispatch();
   uint stride = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
-  for (uint macrocell = range.x + FoldedGroup(); macrocell < range.y; macrocell += stride)
+  for (uint macrocell = slice.x + FoldedGroup(); macrocell < slice.y; macrocell += stride)
   {
     ivec3 firstBlock = MACROCELL_SIDE * MacrocellCoordinates(macrocell);
     LoadSamples(firstBlock);

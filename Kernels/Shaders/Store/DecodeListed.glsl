@@ -1,5 +1,5 @@
 // The loop of both decoding stages, an invocation for each block: over the blocks that rays have
-// requested, or all of them without a cache.
+// requested, or without a cache a slice of all of them.
 
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
@@ -24,14 +24,16 @@ uint ListedBlock(uint i)
   return cacheRequests[i];
 }
 #else
+#include "Store/VolumeSlice.glsl"
+
 uint NumberOfListedBlocks()
 {
-  return volume.NumberOfBlocks;
+  return slice.y - slice.x;
 }
 
 uint ListedBlock(uint i)
 {
-  return i;
+  return slice.x + i;
 }
 #endif
 

@@ -9,6 +9,4 @@ struct Segment
   uint Blocks;
   uint FirstBit; // of the first block, in the first word
   uint Words;
-  uint FirstMacrocell;
-  uint Macrocells;
 };
