@@ -94,15 +94,20 @@ bool Device::IsReady(Urgency urgency)
     stages.begin(), stages.end(), [this](Stage stage) { return this->IsReady(stage); });
 }
 
+const Status& Device::Compile(Stage stage)
+{
+  GLuint program = 0;
+  const Status built = this->Programs->Get(stage, this->Needs, program);
+  return built ? this->Gl.GetStatus() : this->Gl.Fail(built);
+}
+
 bool Device::CompileNext(Urgency urgency)
 {
   for (const Stage stage : ProgramsOf(urgency, this->Needs))
   {
     if (!this->Programs->HasGiven(stage, this->Needs) && this->Gl.GetStatus())
     {
-      GLuint program = 0;
-      const Status built = this->Programs->Get(stage, this->Needs, program);
-      return built || this->Gl.Fail(built);
+      return this->Compile(stage).IsOk();
     }
   }
   return false;

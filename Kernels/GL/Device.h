@@ -72,6 +72,8 @@ public:
   ///@{ The programs of the chosen variants.
   bool IsReady(Stage stage);
   bool IsReady(Urgency urgency);
+  /// Compiles a stage's, and waits for it.
+  const Status& Compile(Stage stage);
   /// Compiles the next one, and waits for it. Returns whether there was one left.
   bool CompileNext(Urgency urgency);
   bool CompilesInBackground() const { return this->Programs->CompilesInBackground(); }

