@@ -1,4 +1,4 @@
-"""What a volume costs when it is loaded: no dispatch for long, and what is too large is an error."""
+"""What loading a volume costs: no dispatch for long, and what is too large is an error."""
 
 import ctypes
 
