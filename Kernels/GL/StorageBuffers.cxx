@@ -199,7 +199,7 @@ Status StorageBuffers::MakeLarger(
 {
   HeldBuffer old = this->Held[Index(info.Id)];
   this->Held[Index(info.Id)] = HeldBuffer();
-  const Status made = this->Make(info, needs);
+  Status made = this->Make(info, needs);
   if (made)
   {
     const std::vector<ByteRange> from = info.Parts(before), to = info.Parts(needs);

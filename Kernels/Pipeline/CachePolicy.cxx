@@ -52,12 +52,20 @@ std::int64_t CachePolicy::SlotsAfterPass(
     const std::int64_t least = slots < pixels ? GrowthFactor * slots : 0;
     this->Wanted = std::max({ this->Wanted, least, WithHeadroom(needed) });
   }
-  return this->ConsecutiveDenials > 0 ? this->StepFrom(slots, maximumSlots) : slots;
+  return this->MayStepNow() ? this->StepFrom(slots, maximumSlots) : slots;
+}
+
+// A step an image is enough, as long as eviction helps.
+bool CachePolicy::MayStepNow() const
+{
+  const bool again = this->InPlace && this->StepsOfImage > 0 && !this->RecentUsage.empty();
+  return this->ConsecutiveDenials > (again ? MaximumConsecutiveDenials : 0);
 }
 
 std::int64_t CachePolicy::SlotsForNewImage(
   std::int64_t slots, std::int64_t maximumSlots, double idleMilliseconds)
 {
+  this->StepsOfImage = 0;
   if (this->RecentUsage.empty())
   {
     return slots;
@@ -105,6 +113,7 @@ void CachePolicy::RecordImage(std::int64_t touchedSlots)
 void CachePolicy::RecordGrowth()
 {
   this->ConsecutiveDenials = 0;
+  ++this->StepsOfImage;
 }
 
 void CachePolicy::Reset(bool inPlace)

@@ -39,10 +39,12 @@ public:
   void Reset(bool inPlace);
 
 private:
+  bool MayStepNow() const;
   std::int64_t StepFrom(std::int64_t slots, std::int64_t maximumSlots) const;
 
   bool InPlace = false;
   int ConsecutiveDenials = 0;           ///< passes in a row that were denied blocks
+  int StepsOfImage = 0;                 ///< by which the cache has grown
   std::int64_t Wanted = 0;              ///< slots that it grows to
   std::deque<std::int64_t> RecentUsage; ///< slots that the last images used, newest last
 };

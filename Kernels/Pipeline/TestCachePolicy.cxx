@@ -116,6 +116,24 @@ TEST(CachePolicy, OnlyTheFirstImageGrowsByMoreThanAStep)
   EXPECT_EQ(policy.SlotsAfterPass(Pass(Pixels, 1), Pixels + Step, Pixels, much), Pixels + 2 * Step);
 }
 
+TEST(CachePolicy, AnImageTakesAnotherStepOnlyWhenDeniedAgainAndAgain)
+{
+  CachePolicy policy;
+  policy.Reset(true);
+  policy.RecordImage(Pixels);
+  const std::int64_t slots = policy.SlotsForNewImage(Pixels, Maximum, NoPause);
+  EXPECT_EQ(slots, Pixels + Step);
+  policy.RecordGrowth();
+  const glsl::PassRecord denied = Pass(Pixels, 50000);
+  for (int pass = 0; pass < 3; ++pass)
+  {
+    EXPECT_EQ(policy.SlotsAfterPass(denied, slots, Pixels, Maximum), slots);
+  }
+  EXPECT_EQ(policy.SlotsAfterPass(denied, slots, Pixels, Maximum), slots + Step);
+  policy.RecordGrowth();
+  EXPECT_EQ(policy.SlotsAfterPass(denied, slots + Step, Pixels, Maximum), slots + Step);
+}
+
 TEST(CachePolicy, GrowsForANewImageWhenTheLastUsedMoreThanTwoThirds)
 {
   CachePolicy policy;
