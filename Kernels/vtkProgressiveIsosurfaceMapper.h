@@ -21,7 +21,9 @@
  * regions are those of vtkVolumeMapper; cropping planes lie in the image's own axes.
  *
  * In an interactive window Render() performs passes for TimeAllowance seconds, shows the image as
- * far as it has come and requests another render from the interactor. Everywhere else (off-screen,
+ * far as it has come and requests another render from the interactor. It shows nothing there until
+ * its shaders are compiled, which takes a driver up to some seconds the first time, and requests
+ * renders likewise. Everywhere else (off-screen,
  * without an interactor, or in a window that does not swap buffers, as when ParaView takes a
  * screenshot) it completes the image. The mapper cannot recognise a vtkWindowToImageFilter on an
  * interactive window: wait for GetConverged(), or set a large time allowance, before it captures. A
