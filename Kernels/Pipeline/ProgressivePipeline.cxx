@@ -340,8 +340,9 @@ std::uint32_t ProgressivePipeline::ChoosePixelsPerStraggler()
   // a software renderer has no lanes to keep busy, and its work groups cost much
   const bool wanted = !this->Gpu->Gl.GetLimits().Software &&
     InfoOf(Stage::CastStragglers).IsNeeded(Moment::Pass, this->Needs);
-  const bool mayCompile = this->Gpu->CompilesInBackground() || this->Shown;
-  return wanted && mayCompile && this->Gpu->IsReady(Stage::CastStragglers) ? PixelsPerStraggler : 0;
+  // a large program, whose compilation would delay the first picture
+  return wanted && this->Shown && this->Gpu->IsReady(Stage::CastStragglers) ? PixelsPerStraggler
+                                                                            : 0;
 }
 
 // Has the next pass planned with the stages that are compiled by now.
@@ -453,7 +454,10 @@ void ProgressivePipeline::FreeForPlan(bool reload)
   this->Gpu->Buffers.Trim(this->Needs);
   this->Gpu->SetNeeds(this->Needs);
   this->Gpu->Request(Urgency::AtOnce, this->Needs); // they compile while the volume is uploaded
-  this->Gpu->Request(Urgency::Soon, this->Needs);
+  if (this->Shown)                                  // else they would delay the first picture
+  {
+    this->Gpu->Request(Urgency::Soon, this->Needs);
+  }
   this->UploadCacheBlock();
 }
 
@@ -480,16 +484,13 @@ bool ProgressivePipeline::AwaitsPrograms()
   {
     return false;
   }
-  if (!this->Gpu->CompilesInBackground())
+  if (this->Gpu->CompilesInBackground() && !this->Gpu->IsReady(Urgency::AtOnce))
   {
-    return this->Gpu->CompileNext(Urgency::AtOnce);
+    std::this_thread::sleep_for(PollingInterval);
+    return true;
   }
-  if (this->Gpu->IsReady(Urgency::AtOnce))
-  {
-    return false;
-  }
-  std::this_thread::sleep_for(PollingInterval);
-  return true;
+  // NVIDIA's driver, too, does a part of the work only now
+  return this->Gpu->CompileNext(Urgency::AtOnce);
 }
 
 void ProgressivePipeline::Start()

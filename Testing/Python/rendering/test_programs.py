@@ -131,7 +131,9 @@ def test_programs_of_later_clicks_compile_while_idle(image, compiler):
     scene.volume.GetProperty().GetIsoSurfaceValues().SetValue(1, 0.2)
     scene.mapper.EmptyCache()
     scene.window.Render()
-    assert 0 < scene.mapper.GetCompletedFraction() < 1  # the first pass is there
+    while scene.mapper.GetCompletedFraction() == 0:
+        fire(scene, timers)
+    assert scene.mapper.GetCompletedFraction() < 1  # the first pass is there
     assert set(compiler.linked) <= SOON
     while timers:
         fire(scene, timers)
@@ -188,6 +190,6 @@ def test_scenes_share_the_stages_that_do_not_depend_on_them(image, compiler):
     scene.mapper.SetCropping(True)
     scene.volume.GetProperty().GetIsoSurfaceValues().SetValue(1, 0.2)
     scene.render()
-    kept = {"BlockRanges", "DecodeBlocks", "CacheReset", "CacheAges", "CacheEvict"}
+    kept = {"BlockRanges", "DecodeBlocks", "CacheReset"}
     assert kept <= first and not kept & set(compiler.linked)
     assert {"CastRays", "Composite"} <= set(compiler.linked)
