@@ -41,8 +41,8 @@ what passes between CPU and GPU (`staging`): under 40 KB.
 A pass runs those that are needed in every pass, in the order of `ProgressivePipeline::RunPass`.
 Where the driver compiles in the background it is given the programs of a scene in the order of the
 column *compiled*: there is no picture without those compiled first; passes do without those
-compiled second, after the first picture, until they are there; the last are compiled when they are asked for, or when the
-image is complete in a window that someone watches.
+compiled second, after the first picture, until they are there; the last are compiled when they are
+asked for, or when the image is complete in a window that someone watches.
 
 | stage | file | work group | compiled | runs | reads | writes |
 |---|---|---|---|---|---|---|
