@@ -7,28 +7,21 @@
 namespace
 {
 constexpr std::int64_t SmallestFirstCache = 1 << 14; // slots
-constexpr std::int64_t LargestFirstCache = 1 << 16;
+constexpr std::int64_t LargestFirstCache = 1 << 18;
 constexpr std::int64_t PixelsPerFirstSlot = 4;
-constexpr std::int64_t GrowthFactor = 2; // of a cache that is copied, and of a small one
+constexpr std::int64_t Headroom = 2; // slots for each that is needed
 constexpr int MaximumConsecutiveDenials = 3;
-// A GPU makes memory at 1 to 2 milliseconds a mebibyte: so many slots are 4.7 MiB.
-constexpr std::int64_t LargestStep = 1 << 14;
+// Measured on an H100: a mebibyte takes 1.5 milliseconds, and 5 where the cache has 700 already.
+// So many slots are 2.4 MiB.
+constexpr std::int64_t LargestStep = 1 << 13;
 constexpr std::int64_t ShrinkFactor = 4;
-constexpr std::int64_t HeadroomOfShrunk = 2;
 constexpr std::size_t RecentImages = 8;
 constexpr double PauseMilliseconds = 2000.0;
 
-// What a cache should have that is too small for so many slots. Growth costs what it adds: this is
-// little more.
-std::int64_t WithHeadroom(std::int64_t needed)
+// Did an image use so many slots that the next may lack some?
+bool IsFull(std::int64_t touchedSlots, std::int64_t slots)
 {
-  return needed + needed / 4;
-}
-
-// Of an image that used so many slots, the next may use some others.
-std::int64_t WithHeadroomAhead(std::int64_t used)
-{
-  return used + used / 2;
+  return 20 * touchedSlots > 19 * slots;
 }
 }
 
@@ -39,34 +32,29 @@ std::int64_t CachePolicy::SlotsAtFirst(std::int64_t pixels, std::int64_t maximum
 }
 
 std::int64_t CachePolicy::SlotsAfterPass(
-  const glsl::PassRecord& pass, std::int64_t slots, std::int64_t pixels, std::int64_t maximumSlots)
+  const glsl::PassRecord& pass, std::int64_t slots, std::int64_t maximumSlots)
 {
   const std::int64_t needed = std::int64_t(pass.TouchedSlots) + pass.RefusedBlocks;
   this->ConsecutiveDenials = pass.RefusedBlocks > 0 ? this->ConsecutiveDenials + 1 : 0;
-  if (this->ConsecutiveDenials > MaximumConsecutiveDenials)
+  const bool again = this->ConsecutiveDenials > MaximumConsecutiveDenials;
+  if (again || (this->ConsecutiveDenials > 0 && needed > slots && this->MayStep()))
   {
-    this->Wanted = std::max(this->Wanted, GrowthFactor * slots);
+    return this->Towards(Headroom * std::max(needed, slots), slots, maximumSlots);
   }
-  if (this->ConsecutiveDenials > 0 && needed > slots)
-  {
-    const std::int64_t least = slots < pixels ? GrowthFactor * slots : 0;
-    this->Wanted = std::max({ this->Wanted, least, WithHeadroom(needed) });
-  }
-  return this->MayStepNow() ? this->StepFrom(slots, maximumSlots) : slots;
+  return slots;
 }
 
 // A step an image is enough, as long as eviction helps.
-bool CachePolicy::MayStepNow() const
+bool CachePolicy::MayStep() const
 {
-  const bool again = this->InPlace && this->StepsOfImage > 0 && !this->RecentUsage.empty();
-  return this->ConsecutiveDenials > (again ? MaximumConsecutiveDenials : 0);
+  return this->IsFirstImage() || !this->InPlace || this->StepsOfImage == 0;
 }
 
 std::int64_t CachePolicy::SlotsForNewImage(
   std::int64_t slots, std::int64_t maximumSlots, double idleMilliseconds)
 {
   this->StepsOfImage = 0;
-  if (this->RecentUsage.empty())
+  if (this->IsFirstImage())
   {
     return slots;
   }
@@ -74,40 +62,34 @@ std::int64_t CachePolicy::SlotsForNewImage(
   if (this->RecentUsage.size() == RecentImages && ShrinkFactor * most < slots &&
     idleMilliseconds >= PauseMilliseconds)
   {
-    return std::min(std::max(HeadroomOfShrunk * most, SmallestFirstCache), slots);
+    return std::min(std::max(Headroom * most, SmallestFirstCache), slots);
   }
-  this->Wanted = std::max(this->Wanted, WithHeadroomAhead(this->RecentUsage.back()));
-  return this->StepFrom(slots, maximumSlots);
+  const std::int64_t last = this->RecentUsage.back();
+  return IsFull(last, slots) ? this->Towards(Headroom * last, slots, maximumSlots) : slots;
 }
 
-// A copy costs all that the cache has: it is to be the last for long. Memory that is added in place
-// comes step by step, so that no image waits for much. Only the first image does: nothing is shown
-// before.
-std::int64_t CachePolicy::StepFrom(std::int64_t slots, std::int64_t maximumSlots) const
+std::int64_t CachePolicy::SlotsAfterImage(
+  std::int64_t touchedSlots, std::int64_t slots, std::int64_t maximumSlots)
 {
-  if (this->Wanted <= slots)
-  {
-    return slots;
-  }
-  std::int64_t next = this->Wanted;
-  if (!this->InPlace)
-  {
-    next = std::max(next, GrowthFactor * slots);
-  }
-  else if (!this->RecentUsage.empty())
-  {
-    next = std::min(next, slots + LargestStep);
-  }
-  return std::max(slots, std::min(next, maximumSlots));
-}
-
-void CachePolicy::RecordImage(std::int64_t touchedSlots)
-{
+  const std::int64_t next =
+    this->IsFirstImage() ? this->Towards(Headroom * touchedSlots, slots, maximumSlots) : slots;
   this->RecentUsage.push_back(touchedSlots);
   if (this->RecentUsage.size() > RecentImages)
   {
     this->RecentUsage.pop_front();
   }
+  return next;
+}
+
+// Only the first image waits for all the memory that there is to be: nothing is shown before, and
+// the second is to be drawn at full speed. Later, memory comes step by step; a copy costs all that
+// the cache has, and is to be the last for long.
+std::int64_t CachePolicy::Towards(
+  std::int64_t wanted, std::int64_t slots, std::int64_t maximumSlots) const
+{
+  const bool byStep = this->InPlace && !this->IsFirstImage();
+  const std::int64_t next = byStep ? std::min(wanted, slots + LargestStep) : wanted;
+  return std::max(slots, std::min(next, maximumSlots));
 }
 
 void CachePolicy::RecordGrowth()

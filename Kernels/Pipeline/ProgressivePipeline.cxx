@@ -254,10 +254,9 @@ Status ProgressivePipeline::MakeCache(bool newImage)
   {
     this->RemakeCache(slots);
   }
-  else if (slots > before && this->Gpu->IsReady(Stage::CacheUnwind) &&
-    this->Gpu->IsReady(Stage::CacheGrow))
+  else if (slots > before)
   {
-    this->GrowCache(slots, true);
+    this->GrowCacheAhead(slots);
   }
   return this->GetStatus();
 }
@@ -301,6 +300,25 @@ void ProgressivePipeline::GrowCache(std::int64_t slots, bool ahead)
     this->Gpu->Dispatch(stage, std::min(GroupsFor(stage, this->Needs.Slots), MaximumResetGroups));
   }
   this->Policy.RecordGrowth();
+}
+
+// Nobody waits for its programs while there is no need.
+void ProgressivePipeline::GrowCacheAhead(std::int64_t slots)
+{
+  if (this->Gpu->IsReady(Stage::CacheUnwind) && this->Gpu->IsReady(Stage::CacheGrow))
+  {
+    this->GrowCache(slots, true);
+  }
+}
+
+void ProgressivePipeline::EndImageOfCache(std::int64_t touchedSlots)
+{
+  const std::int64_t slots =
+    this->Policy.SlotsAfterImage(touchedSlots, this->Needs.Slots, this->Plan.MaximumSlots);
+  if (this->Needs.Cached && slots > this->Needs.Slots)
+  {
+    this->GrowCacheAhead(slots);
+  }
 }
 
 // Where the GPU has no room for the cache, there is none; the context keeps the error.
@@ -628,8 +646,8 @@ void ProgressivePipeline::AwaitPass()
   const glsl::PassRecord* pass = this->Log.AddKnown(this->Gpu->Snapshots.Await());
   if (pass && this->Log.GetKnown() > this->PassesBeforeCache)
   {
-    const std::int64_t slots = this->Policy.SlotsAfterPass(
-      *pass, this->Needs.Slots, this->Needs.Pixels, this->Plan.MaximumSlots);
+    const std::int64_t slots =
+      this->Policy.SlotsAfterPass(*pass, this->Needs.Slots, this->Plan.MaximumSlots);
     if (slots > this->Needs.Slots)
     {
       this->GrowCache(slots, false);
@@ -653,7 +671,7 @@ void ProgressivePipeline::EndImage()
   this->SinceImage = Stopwatch();
   if (!this->Log.GetPasses().empty())
   {
-    this->Policy.RecordImage(this->Log.GetPasses().back().TouchedSlots);
+    this->EndImageOfCache(this->Log.GetPasses().back().TouchedSlots);
     this->Forecast.RecordImage(static_cast<std::int64_t>(this->Log.GetPasses().size()));
   }
 }

@@ -127,6 +127,8 @@ private:
   Status MakeCache(bool newImage);
   void RemakeCache(std::int64_t slots);
   void GrowCache(std::int64_t slots, bool ahead);
+  void GrowCacheAhead(std::int64_t slots);
+  void EndImageOfCache(std::int64_t touchedSlots);
   void FillCacheBlock(std::int64_t firstNewSlot, std::int64_t firstNewPage);
   bool CheckCache(const Status& made);
   void UploadCacheBlock();
