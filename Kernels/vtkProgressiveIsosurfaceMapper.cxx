@@ -4,6 +4,7 @@
 
 #include "GL/Stopwatch.h"
 #include "Pipeline/FixedView.h"
+#include "Pipeline/ImageRectangle.h"
 #include "Pipeline/ProgressivePipeline.h"
 #include "Scene/BoundWindow.h"
 #include "Scene/CameraTranslation.h"
@@ -44,6 +45,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 // Users see the number in the header: it is SpeculationLimit's largest value and its default.
@@ -374,10 +376,11 @@ bool vtkProgressiveIsosurfaceMapper::UpdatePipeline(bool newImage, bool mayWait)
   {
     return false;
   }
+  const bool empty = IsEmpty(impl.View.GetScene().View);
   if (!impl.Pipeline.IsStarted() &&
-    (!mayWait || impl.Pipeline.AwaitPrograms(1e3 * this->TimeAllowance)))
+    (!mayWait || empty || impl.Pipeline.AwaitPrograms(1e3 * this->TimeAllowance)))
   {
-    if (!this->Continues(impl.Pipeline.PrepareVolume()))
+    if (!empty && !this->Continues(impl.Pipeline.PrepareVolume()))
     {
       return false;
     }
@@ -419,7 +422,8 @@ bool vtkProgressiveIsosurfaceMapper::Refine(vtkOpenGLRenderWindow* window)
   }
   if (impl.Pipeline.CheckMemory())
   {
-    const DrawingState drawing(window->GetState(), impl.View.GetScene().Translucent);
+    const PipelineScene& scene = impl.View.GetScene();
+    const DrawingState drawing(window->GetState(), scene.View, scene.Translucent);
     impl.Pipeline.Composite();
   }
   if (!this->Continues(impl.Pipeline.GetStatus()))
@@ -449,8 +453,8 @@ void vtkProgressiveIsosurfaceMapper::Select(vtkHardwareSelector* selector)
   }
   if (this->Continues(impl.Pipeline.GetStatus()))
   {
-    DrawSelection(
-      selector, impl.Window.Get()->GetState(), impl.Inputs.GetValues().GetVolume(), impl.Pipeline);
+    DrawSelection(selector, impl.Window.Get()->GetState(), impl.View.GetScene().View,
+      impl.Inputs.GetValues().GetVolume(), impl.Pipeline);
   }
 }
 
@@ -567,15 +571,19 @@ bool vtkProgressiveIsosurfaceMapper::HasImage()
 bool vtkProgressiveIsosurfaceMapper::GetHit(int x, int y, double position[3], double& isovalue)
 {
   Internals& impl = *this->Impl;
-  if (!this->HasImage() || !impl.View.ViewportToImage(x, y))
+  if (!this->HasImage() || !impl.View.RendererToViewport(x, y))
   {
     return false;
   }
   const PipelineScene& scene = impl.View.GetScene();
   const ViewGeometry& view = scene.View;
+  const std::optional<std::int64_t> pixel = ImagePixel(view, x, y);
+  if (!pixel)
+  {
+    return false;
+  }
   impl.Window.Get()->MakeCurrent();
-  const PixelHit hit =
-    impl.Pipeline.GetHits().Read(static_cast<std::int64_t>(y) * view.ImageSize[0] + x);
+  const PixelHit hit = impl.Pipeline.GetHits().Read(*pixel);
   if (hit.Key == glsl::NO_HIT)
   {
     return false;
@@ -606,7 +614,7 @@ bool vtkProgressiveIsosurfaceMapper::GetDepthImage(vtkImageData* image)
   depths->SetName("Depth");
   depths->SetNumberOfValues(static_cast<vtkIdType>(distances.size()));
   std::copy(distances.begin(), distances.end(), depths->GetPointer(0));
-  image->SetDimensions(scene.View.ImageSize[0], scene.View.ImageSize[1], 1);
+  image->SetDimensions(scene.View.ViewportSize[0], scene.View.ViewportSize[1], 1);
   image->GetPointData()->SetScalars(depths);
   return true;
 }

@@ -218,7 +218,8 @@ public:
   ///@{
   /**
    * Whether the image of the last Render() is complete, and the fraction of its pixels that are
-   * complete.
+   * complete. An image is the rectangle that the volume covers in the viewport; where it covers
+   * nothing it is complete at once.
    */
   bool GetConverged();
   double GetCompletedFraction();

@@ -15,10 +15,13 @@
  * - active_blocks: the visible blocks and the neighbours that they reach into (*)
  * - decoded_blocks: blocks that were decoded
  * - cached_blocks: cache slots in use after the pass
- * - completed: fraction of the pixels that are complete after the pass, 0 … 1
+ * - completed: fraction of the image's pixels that are complete after the pass, 0 … 1
  * - elapsed_ms: milliseconds from the start of the image to the end of the pass
  *
  * (*) NaN unless the mapper's DetailedStatistics are on.
+ *
+ * An image has the pixels of the rectangle that the volume covers in the viewport. Without any
+ * there is no pass.
  *
  * Times are the GPU's (timer queries), except with Mesa's llvmpipe: its timer queries are wrong, so
  * times are wall clock there.

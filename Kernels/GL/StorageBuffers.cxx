@@ -271,15 +271,17 @@ void StorageBuffers::Free(Buffer buffer)
   held = HeldBuffer();
 }
 
-void StorageBuffers::Fill(Buffer buffer, std::uint32_t value)
+void StorageBuffers::Fill(Buffer buffer, std::uint32_t value, const SceneNeeds& needs)
 {
-  if (!this->GetName(buffer))
+  const std::int64_t bytes = PipelineBuffers()[Index(buffer)].Bytes(needs);
+  if (!this->GetName(buffer) || bytes == 0)
   {
     return;
   }
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, this->GetName(buffer));
-  glClearBufferData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
+  glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 0, static_cast<GLsizeiptr>(bytes),
+    GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
 }
 

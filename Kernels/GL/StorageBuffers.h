@@ -37,8 +37,8 @@ public:
   void Free(Lifetime lifetime);
   void FreeAll();
 
-  /// Sets every word of a buffer.
-  void Fill(Buffer buffer, std::uint32_t value);
+  /// Sets the words of a buffer that a scene uses, which may need less than there is room for.
+  void Fill(Buffer buffer, std::uint32_t value, const SceneNeeds& needs);
   /// Fills a buffer that the stages only read.
   void Upload(Buffer buffer, const std::vector<std::uint32_t>& words);
 

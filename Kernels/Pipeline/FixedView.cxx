@@ -123,7 +123,7 @@ void FixRays(const ViewGeometry& view, const DrawnDepths& depths, glsl::View& bl
   for (int axis = 0; axis < 3; ++axis)
   {
     axes[axis] = LineOnAxis(view, depths, axis);
-    fits = fits && axes[axis].LargestIn(view.ImageSize) < std::ldexp(Exact(1), MostBits);
+    fits = fits && axes[axis].LargestIn(view.ViewportSize) < std::ldexp(Exact(1), MostBits);
   }
   if (!fits)
   {
@@ -139,7 +139,7 @@ void FixRays(const ViewGeometry& view, const DrawnDepths& depths, glsl::View& bl
   }
   for (int i = 0; i < view.NumberOfClippingPlanes; ++i)
   {
-    const Line line = DistancesFromPlane(view.ClippingPlanes[i], axes, view.ImageSize);
+    const Line line = DistancesFromPlane(view.ClippingPlanes[i], axes, view.ViewportSize);
     Store(line.Origin, i % 3, block.ClippingOrigin[i / 3]);
     Store(line.Way, i % 3, block.ClippingWay[i / 3]);
   }
@@ -201,8 +201,13 @@ glsl::View FixView(const ViewGeometry& view)
   FixPlanes(view.CroppingHigh, block.CroppingHigh);
   std::copy(view.FirstDrawn, view.FirstDrawn + 3, block.FirstDrawn);
   std::copy(view.LastDrawn, view.LastDrawn + 3, block.LastDrawn);
-  std::copy(view.ImageSize, view.ImageSize + 2, block.ImageSize);
-  std::copy(view.ImageOrigin, view.ImageOrigin + 2, block.ImageOrigin);
+  for (int axis = 0; axis < 2; ++axis)
+  {
+    block.ImageSize[axis] = view.ImageSize[axis];
+    block.FirstPixel[axis] = view.ImageOrigin[axis];
+    block.ImageOrigin[axis] = view.ViewportOrigin[axis] + view.ImageOrigin[axis];
+    block.ViewportSize[axis] = view.ViewportSize[axis];
+  }
   std::copy(std::begin(view.Isovalues), std::end(view.Isovalues), block.Isovalues);
   block.NumberOfIsovalues = view.NumberOfIsovalues;
   block.NumberOfClippingPlanes = view.NumberOfClippingPlanes;

@@ -22,6 +22,7 @@ struct PixelHit
 class HitReadback
 {
 public:
+  /// The needs have the image's own number of pixels.
   HitReadback(HostTransfer& transfer, GLuint hits, const SceneNeeds& needs)
     : Transfer(transfer)
     , Hits(hits)
@@ -29,7 +30,7 @@ public:
   {
   }
 
-  ///@{ Of all pixels, rows from the bottom.
+  ///@{ Of all pixels of the image, rows from the bottom.
   std::vector<std::uint32_t> ReadKeys();
   std::vector<float> ReadDepths();
   ///@}

@@ -21,6 +21,9 @@ constexpr std::int64_t SlotsPerMapPage = 8;
 
 constexpr std::int64_t LargestCopiedCache = 1 << 16; // slots: less costs little to copy
 
+constexpr std::int64_t MostRoom = 2;         // for pixels, beside what the image needs
+constexpr double PauseMilliseconds = 2000.0; // no movement has one
+
 std::int64_t LeastSlots(const SceneNeeds& scene)
 {
   return std::min(MinimumSlots, scene.Blocks);
@@ -172,6 +175,27 @@ SceneNeeds WithReservation(const DeviceLimits& limits, const SceneNeeds& scene)
   needs.MapPageCapacity = WithCache(needs, needs.SlotCapacity).MapPages;
   needs.CommitBytes = limits.SparsePage;
   return needs;
+}
+
+SceneNeeds WithPixels(const SceneNeeds& scene, std::int64_t pixels)
+{
+  SceneNeeds needs = scene;
+  needs.Pixels = pixels;
+  return needs;
+}
+
+std::int64_t RoomForImage(std::int64_t held, std::int64_t needed, std::int64_t most, double idle)
+{
+  std::int64_t room = held;
+  if (needed > held)
+  {
+    room = std::max(needed, MostRoom * held);
+  }
+  else if (held > MostRoom * needed && idle >= PauseMilliseconds)
+  {
+    room = needed;
+  }
+  return std::min(room, most);
 }
 
 CacheGrowth PlanGrowth(const MemoryPlan& plan, const SceneNeeds& scene, std::int64_t wanted)

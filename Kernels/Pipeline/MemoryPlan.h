@@ -22,7 +22,8 @@ struct MemoryPlan
 };
 
 /// Chooses the budget, decides between a cache and the decoded volume, and limits the cache.
-/// The scene's slots and map pages do not count.
+/// The scene's slots and map pages do not count. Its pixels are to be all of the viewport, whatever
+/// part of it has rays: then nothing changes when a user comes nearer.
 MemoryPlan PlanMemory(
   const DeviceLimits& limits, const PipelineSettings& settings, const SceneNeeds& scene);
 
@@ -41,6 +42,14 @@ Status CheckBudget(const MemoryPlan& plan);
 /// The scene with addresses reserved for a cache of any size, where the GPU can do that and the
 /// volume needs more than a small one.
 SceneNeeds WithReservation(const DeviceLimits& limits, const SceneNeeds& scene);
+
+/// The scene with room for so many pixels.
+SceneNeeds WithPixels(const SceneNeeds& scene, std::int64_t pixels);
+
+/// For how many pixels there is to be room in the next image's buffers, which have room for `held`.
+/// The image has `needed`, and at most `most`. In a movement, where it differs from frame to frame,
+/// it doubles at least, and does not shrink before a pause of so many milliseconds.
+std::int64_t RoomForImage(std::int64_t held, std::int64_t needed, std::int64_t most, double idle);
 
 struct CacheGrowth
 {

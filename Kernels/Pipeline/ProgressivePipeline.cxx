@@ -244,7 +244,7 @@ Status ProgressivePipeline::MakeCache(bool newImage)
   std::int64_t slots = before;
   if (before == 0)
   {
-    slots = CachePolicy::SlotsAtFirst(this->Needs.Pixels, most);
+    slots = CachePolicy::SlotsAtFirst(this->ViewportPixels, most);
   }
   else if (newImage)
   {
@@ -385,9 +385,9 @@ Status ProgressivePipeline::SetScene(
   }
   this->Gpu->Uniforms.Upload(FixView(scene.View));
   this->Gpu->Uniforms.Upload(scene.Look);
-  const SceneNeeds before = this->Needs;
+  const SceneNeeds before = this->NeedsOfImage();
   this->UpdateNeeds(scene);
-  this->Started = this->Started && !newImage && before.Pixels == this->Needs.Pixels &&
+  this->Started = this->Started && !newImage && before.Pixels == this->ImagePixels &&
     before.GetBits() == this->Needs.GetBits();
   this->Shown = this->Shown && before.GetBits() == this->Needs.GetBits();
   return this->MakeRoom(newImage);
@@ -420,9 +420,13 @@ void ProgressivePipeline::DropDecodedBlocks()
 void ProgressivePipeline::UpdateNeeds(const PipelineScene& scene)
 {
   const ViewGeometry& view = scene.View;
-  std::copy(view.ImageSize, view.ImageSize + 2, this->Viewport);
-  std::copy(view.ImageOrigin, view.ImageOrigin + 2, this->Viewport + 2);
-  this->Needs.Pixels = static_cast<std::int64_t>(view.ImageSize[0]) * view.ImageSize[1];
+  for (int axis = 0; axis < 2; ++axis)
+  {
+    this->ImagePlace[axis] = view.ImageSize[axis];
+    this->ImagePlace[2 + axis] = view.ViewportOrigin[axis] + view.ImageOrigin[axis];
+  }
+  this->ImagePixels = static_cast<std::int64_t>(view.ImageSize[0]) * view.ImageSize[1];
+  this->ViewportPixels = static_cast<std::int64_t>(view.ViewportSize[0]) * view.ViewportSize[1];
   this->Needs.Detailed = this->Settings.Detailed;
   this->Needs.Lit = scene.Look.NumberOfLights > 0;
   this->Needs.Translucent = scene.Translucent;
@@ -437,14 +441,22 @@ Status ProgressivePipeline::MakeRoom(bool newImage)
 {
   const DeviceLimits& limits = this->Gpu->Gl.GetLimits();
   this->Needs = WithReservation(limits, this->Needs);
-  this->Plan = PlanMemory(limits, this->Settings, this->Needs);
-  const Status sizes = CheckSizes(limits, WithCache(this->Needs, 0));
+  const SceneNeeds most = WithPixels(this->Needs, this->ViewportPixels);
+  this->Plan = PlanMemory(limits, this->Settings, most);
+  const Status sizes = CheckSizes(limits, WithCache(most, 0));
   if (const Status checked = sizes ? CheckBudget(this->Plan) : sizes; !checked)
   {
     return this->Gpu->Gl.Fail(checked);
   }
+  this->Needs.Pixels = RoomForImage(this->Needs.Pixels, this->ImagePixels, this->ViewportPixels,
+    newImage ? this->SinceImage.GetMilliseconds() : 0.0);
   const bool reload = !this->VolumeLoaded || this->Plan.Cached != this->Needs.Cached;
   this->FreeForPlan(reload);
+  return this->ImagePixels > 0 ? this->MakeBuffers(reload, newImage) : Status();
+}
+
+Status ProgressivePipeline::MakeBuffers(bool reload, bool newImage)
+{
   Status status = reload ? this->LoadVolume() : Status();
   if (status)
   {
@@ -468,6 +480,7 @@ void ProgressivePipeline::FreeForPlan(bool reload)
   if (reload)
   {
     this->Streams.Free();
+    this->VolumeLoaded = false;
   }
   this->Gpu->Buffers.Trim(this->Needs);
   this->Gpu->SetNeeds(this->Needs);
@@ -514,10 +527,15 @@ bool ProgressivePipeline::AwaitsPrograms()
 void ProgressivePipeline::Start()
 {
   this->Gpu->Snapshots.Clear();
-  this->Log.StartImage(this->Needs.Pixels);
+  this->Log.StartImage(this->ImagePixels);
   this->PassesBeforeCache = 0;
   this->Started = true;
   this->Gpu->Timer.StartImage(StagesOf(Moment::Volume, this->Needs));
+  if (this->ImagePixels == 0)
+  {
+    this->SinceImage = Stopwatch();
+    return;
+  }
   this->ClearImage();
   const std::uint32_t yes = 1;
   this->Gpu->Transfer.Write(this->Gpu->Buffers.GetName(Buffer::Control),
@@ -530,13 +548,14 @@ void ProgressivePipeline::Start()
 
 void ProgressivePipeline::ClearImage()
 {
-  this->Gpu->Buffers.Fill(Buffer::Hits, glsl::NO_HIT);
-  this->Gpu->Buffers.Fill(Buffer::Normals, glsl::NO_NORMAL);
-  this->Gpu->Buffers.Fill(Buffer::Layers, 0);
-  if (this->Needs.Obstructed)
+  const SceneNeeds needs = this->NeedsOfImage();
+  this->Gpu->Buffers.Fill(Buffer::Hits, glsl::NO_HIT, needs);
+  this->Gpu->Buffers.Fill(Buffer::Normals, glsl::NO_NORMAL, needs);
+  this->Gpu->Buffers.Fill(Buffer::Layers, 0, needs);
+  if (needs.Obstructed)
   {
-    CaptureDepths(this->Viewport, this->Gpu->Buffers.GetName(Buffer::Hits),
-      HitReadback::GetObstacleOffset(this->Needs));
+    CaptureDepths(this->ImagePlace, this->Gpu->Buffers.GetName(Buffer::Hits),
+      HitReadback::GetObstacleOffset(needs));
   }
 }
 
@@ -616,6 +635,7 @@ void ProgressivePipeline::RunPasses(
     if (this->Needs.IsSinglePass())
     {
       this->Log.AssumeComplete();
+      this->SinceImage = Stopwatch();
       return;
     }
     this->AwaitPass();
@@ -691,21 +711,35 @@ void ProgressivePipeline::RequestForClicks()
 
 void ProgressivePipeline::Composite()
 {
-  this->Gpu->Draw(Stage::Composite);
-  this->Shown = true;
+  if (this->ImagePixels > 0)
+  {
+    this->Gpu->Draw(Stage::Composite);
+    this->Shown = true;
+  }
+}
+
+void ProgressivePipeline::Select(const SelectedId& selected)
+{
+  if (this->ImagePixels > 0)
+  {
+    this->Gpu->Draw(Stage::Select, &selected);
+  }
 }
 
 double ProgressivePipeline::GetCompletedFraction() const
 {
-  const double pixels = static_cast<double>(this->Needs.Pixels);
-  return this->Started && pixels > 0.0
-    ? 1.0 - static_cast<double>(this->Log.GetRemainingRays()) / pixels
-    : 0.0;
+  if (!this->Started)
+  {
+    return 0.0;
+  }
+  const double pixels = static_cast<double>(std::max<std::int64_t>(this->ImagePixels, 1));
+  return 1.0 - static_cast<double>(this->Log.GetRemainingRays()) / pixels;
 }
 
 HitReadback ProgressivePipeline::GetHits()
 {
-  return HitReadback(this->Gpu->Transfer, this->Gpu->Buffers.GetName(Buffer::Hits), this->Needs);
+  return HitReadback(
+    this->Gpu->Transfer, this->Gpu->Buffers.GetName(Buffer::Hits), this->NeedsOfImage());
 }
 
 //------------------------------------------------------------------------------

@@ -53,6 +53,7 @@ public:
   void EmptyCache() { this->CacheToEmpty = true; }
   /// Makes ready what the scene needs: the volume's macrocells, the cache, the image's buffers. An
   /// error where the budget or the GPU has no room. `newImage`: the last image is not to go on.
+  /// For an image without pixels nothing is made, and no stage runs.
   Status SetScene(const PipelineScene& scene, const PipelineSettings& settings, bool newImage);
 
   /// Waits until the programs that any picture needs are compiled, but not much longer than so many
@@ -77,10 +78,11 @@ public:
   /// Has the driver compile what a click on the complete image may need next: stages on demand, and
   /// those of the scene with a second isovalue, translucent, or clipped.
   void RequestForClicks();
-  /// Draws the image with its depth into the current framebuffer and viewport.
+  /// Draws the image with its depth into the current framebuffer. The viewport is the image's part
+  /// of the window.
   void Composite();
   /// Draws identifiers instead, for a vtkHardwareSelector; see Select.frag.
-  void Select(const SelectedId& selected) { this->Gpu->Draw(Stage::Select, &selected); }
+  void Select(const SelectedId& selected);
   /// What the rays have met so far.
   HitReadback GetHits();
   /// Decodes the whole volume with the pipeline's own decoder; `values`: 64 for each block.
@@ -118,6 +120,8 @@ private:
   void DropDecodedBlocks();
   void UpdateNeeds(const PipelineScene& scene);
   Status MakeRoom(bool newImage);
+  Status MakeBuffers(bool reload, bool newImage);
+  SceneNeeds NeedsOfImage() const { return WithPixels(this->Needs, this->ImagePixels); }
   void FreeForPlan(bool reload);
   Status LoadVolume();
   Status UploadVolume();
@@ -150,7 +154,9 @@ private:
   PipelineSettings Settings;
   SceneNeeds Needs; ///< of the scene, which the GPU's buffers are made for
   glsl::Cache Cache = {};
-  std::int32_t Viewport[4] = { 0, 0, 0, 0 }; ///< width, height and origin in the window
+  std::int32_t ImagePlace[4] = { 0, 0, 0, 0 }; ///< width, height and origin in the window
+  std::int64_t ImagePixels = 0;
+  std::int64_t ViewportPixels = 0;
   MemoryPlan Plan;
   CachePolicy Policy;
   PassLog Log;

@@ -14,8 +14,8 @@ namespace
 ViewGeometry MakeView()
 {
   ViewGeometry view = {};
-  view.ImageSize[0] = 4;
-  view.ImageSize[1] = 2;
+  view.ViewportSize[0] = 4;
+  view.ViewportSize[1] = 2;
   view.RayOrigin.Base[2] = 10.0;
   view.RayOrigin.PerX[0] = 1.0;
   view.RayOrigin.PerY[1] = 1.0;
@@ -47,8 +47,8 @@ double At(const glsl::FixedPixelVector& vector, int axis, int x, int y)
 ViewGeometry MakePerspectiveView()
 {
   ViewGeometry view = MakeView();
-  view.ImageSize[0] = 3840;
-  view.ImageSize[1] = 2160;
+  view.ViewportSize[0] = 3840;
+  view.ViewportSize[1] = 2160;
   view.RayOrigin = {};
   view.RayOrigin.Base[2] = 10.0;
   view.RayDirection = { { -1.0 / 3.0, -0.2, -1.0 }, { 2.0 / 3.0 / 3840, 0.0, 0.0 },

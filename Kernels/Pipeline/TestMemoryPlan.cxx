@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -333,4 +334,34 @@ TEST(MemoryPlan, NoBudgetMakesSlotsNegative)
     EXPECT_TRUE(plan.Cached);
     EXPECT_FALSE(CheckBudget(plan));
   }
+}
+
+TEST(MemoryPlan, ImagesHaveJustTheRoomThatTheyNeed)
+{
+  EXPECT_EQ(RoomForImage(0, 100, 1000, 0.0), 100);
+  EXPECT_EQ(RoomForImage(100, 100, 1000, 0.0), 100);
+  EXPECT_EQ(RoomForImage(500, 500, 400, 0.0), 400); // of a smaller window
+}
+
+TEST(MemoryPlan, RoomForImagesGrowsInFewSteps)
+{
+  std::int64_t room = 10000;
+  int steps = 0;
+  for (std::int64_t needed = 10000; needed <= 1000000; needed += needed / 50)
+  {
+    const std::int64_t next = RoomForImage(room, needed, 1000000, 0.0);
+    EXPECT_GE(next, needed);
+    EXPECT_LE(next, 2 * needed);
+    steps += next != room;
+    room = next;
+  }
+  EXPECT_LE(steps, 7);
+}
+
+TEST(MemoryPlan, RoomForImagesShrinksAfterAPause)
+{
+  EXPECT_EQ(RoomForImage(1000, 10, 1000, 0.0), 1000);
+  EXPECT_EQ(RoomForImage(1000, 10, 1000, 5000.0), 10);
+  EXPECT_EQ(RoomForImage(1000, 500, 1000, 5000.0), 1000); // not twice too large
+  EXPECT_EQ(RoomForImage(1000, 0, 1000, 5000.0), 0);
 }

@@ -7,7 +7,7 @@
 
 #include "Shaders/Glsl.h"
 
-/// A vector that is Base + x PerX + y PerY at the pixel's centre (x, y).
+/// A vector that is Base + x PerX + y PerY at the pixel's centre (x, y) of the viewport.
 struct PixelVector
 {
   double Base[3];
@@ -39,8 +39,11 @@ struct ViewGeometry
   /// Samples between which the surface is drawn; beyond, they only give normals.
   std::int32_t FirstDrawn[3];
   std::int32_t LastDrawn[3];
+  std::int32_t ViewportSize[2];
+  std::int32_t ViewportOrigin[2]; ///< in the window
+  /// The image is a rectangle of the viewport, outside of which no ray meets what is drawn.
   std::int32_t ImageSize[2];
-  std::int32_t ImageOrigin[2]; ///< in the window
+  std::int32_t ImageOrigin[2]; ///< in the viewport
   std::int32_t NumberOfIsovalues;
   std::int32_t NumberOfClippingPlanes;
   std::int32_t DrawnRegions; ///< a bit for each cropping region

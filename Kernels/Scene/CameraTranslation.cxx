@@ -100,7 +100,7 @@ void TranslateRays(vtkMatrix4x4* projection, vtkMatrix4x4* eyeToIndex, ViewGeome
   {
     view.Depth[column] = -indexToEye->GetElement(2, column);
   }
-  const EyeRays rays = MakeEyeRays(projection, view.ImageSize[0], view.ImageSize[1]);
+  const EyeRays rays = MakeEyeRays(projection, view.ViewportSize[0], view.ViewportSize[1]);
   TranslateToIndex(rays.Origin, true, eyeToIndex, view.RayOrigin);
   TranslateToIndex(rays.Direction, false, eyeToIndex, view.RayDirection);
   CopyTerms(rays.Origin, view.EyeOrigin);

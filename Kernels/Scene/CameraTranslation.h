@@ -9,7 +9,7 @@
 
 class vtkMatrix4x4;
 
-/// Finds the ray of every pixel of `view.ImageSize`. `projection` maps eye to clip coordinates,
+/// Finds the ray of every pixel of `view.ViewportSize`. `projection` maps eye to clip coordinates,
 /// with depths from -1 to 1.
 void TranslateRays(vtkMatrix4x4* projection, vtkMatrix4x4* eyeToIndex, ViewGeometry& view);
 

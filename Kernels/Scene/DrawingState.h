@@ -6,13 +6,15 @@
 
 #include "vtkOpenGLState.h"
 
+struct ViewGeometry;
+
 /// Sets the state, and restores what was there before when it goes out of scope.
 class DrawingState
 {
 public:
-  /// With `blended` the fragments' colours are premultiplied by their opacities, and depths stay as
-  /// they are.
-  DrawingState(vtkOpenGLState* state, bool blended);
+  /// The viewport is the image's part of the window. With `blended` the fragments' colours are
+  /// premultiplied by their opacities, and depths stay as they are.
+  DrawingState(vtkOpenGLState* state, const ViewGeometry& view, bool blended);
   DrawingState(const DrawingState&) = delete;
   void operator=(const DrawingState&) = delete;
 
@@ -21,6 +23,7 @@ private:
   vtkOpenGLState::ScopedglDepthMask DepthMask;
   vtkOpenGLState::ScopedglDepthFunc DepthFunction;
   vtkOpenGLState::ScopedglBlendFuncSeparate BlendFunction;
+  vtkOpenGLState::ScopedglViewport Viewport;
 };
 
 #endif

@@ -5,6 +5,7 @@
 #include "Pipeline/FixedView.h"
 
 #include <cmath>
+#include <limits>
 
 namespace
 {
@@ -12,7 +13,16 @@ double AtPixel(const PixelVector& vector, int axis, double px, double py)
 {
   return vector.Base[axis] + px * vector.PerX[axis] + py * vector.PerY[axis];
 }
+}
 
+std::optional<std::int64_t> ImagePixel(const ViewGeometry& view, int x, int y)
+{
+  const int column = x - view.ImageOrigin[0], row = y - view.ImageOrigin[1];
+  if (column < 0 || row < 0 || column >= view.ImageSize[0] || row >= view.ImageSize[1])
+  {
+    return std::nullopt;
+  }
+  return std::int64_t(row) * view.ImageSize[0] + column;
 }
 
 double RayLength(const ViewGeometry& view, int x, int y, double t)
@@ -38,18 +48,18 @@ void EyePosition(const ViewGeometry& view, int x, int y, double t, double positi
 std::vector<float> HitDistances(const ViewGeometry& view, const std::vector<std::uint32_t>& keys,
   const std::vector<float>& firstParameters)
 {
-  std::vector<float> distances(keys.size());
+  const std::size_t width = view.ViewportSize[0];
+  std::vector<float> distances(
+    width * view.ViewportSize[1], std::numeric_limits<float>::infinity());
   const DrawnDepths depths = FindDrawnDepths(view);
-  for (int y = 0; y < view.ImageSize[1]; ++y)
+  for (std::size_t pixel = 0; pixel < keys.size(); ++pixel)
   {
-    for (int x = 0; x < view.ImageSize[0]; ++x)
-    {
-      const std::size_t pixel = static_cast<std::size_t>(y) * view.ImageSize[0] + x;
-      const double last = HitDepth(depths, keys[pixel]);
-      const bool isTranslucent = !firstParameters.empty() && std::isfinite(last);
-      const double t = isTranslucent ? firstParameters[pixel] : last;
-      distances[pixel] = static_cast<float>(RayLength(view, x, y, t));
-    }
+    const int x = view.ImageOrigin[0] + static_cast<int>(pixel % view.ImageSize[0]);
+    const int y = view.ImageOrigin[1] + static_cast<int>(pixel / view.ImageSize[0]);
+    const double last = HitDepth(depths, keys[pixel]);
+    const bool isTranslucent = !firstParameters.empty() && std::isfinite(last);
+    const double t = isTranslucent ? firstParameters[pixel] : last;
+    distances[y * width + x] = static_cast<float>(RayLength(view, x, y, t));
   }
   return distances;
 }

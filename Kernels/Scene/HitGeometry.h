@@ -7,14 +7,19 @@
 #include "Pipeline/ViewGeometry.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
+
+/// The number that a pixel has in the image; none where it lies outside.
+std::optional<std::int64_t> ImagePixel(const ViewGeometry& view, int x, int y);
 
 /// Finds the distance in world units from the camera (in parallel projection: from its plane) to
 /// the place with parameter t on a ray.
 double RayLength(const ViewGeometry& view, int x, int y, double t);
 
-/// Finds the distances of all pixels' hits, infinity for none. The keys of a translucent image are
-/// those of the last hits; `firstParameters` are then the parameters of the first, otherwise empty.
+/// Finds the distances of the hits of all of the viewport's pixels, infinity for none. The keys, of
+/// the image's pixels, are those of the last hits in a translucent image; `firstParameters` are
+/// then the parameters of the first, otherwise empty.
 std::vector<float> HitDistances(const ViewGeometry& view, const std::vector<std::uint32_t>& keys,
   const std::vector<float>& firstParameters);
 

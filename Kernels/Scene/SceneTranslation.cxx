@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Scene/SceneTranslation.h"
 
+#include "Pipeline/ImageRectangle.h"
 #include "Scene/CameraTranslation.h"
 #include "Scene/LookTranslation.h"
 #include "Scene/RegionTranslation.h"
@@ -47,11 +48,12 @@ PipelineScene TranslateScene(vtkRenderer* renderer, vtkVolume* prop, vtkVolumeMa
   vtkMatrix4x4::Invert(indexToWorld, worldToIndex);
   FindEyeToIndex(worldToEye, indexToWorld, eyeToIndex);
 
-  std::copy(viewport, viewport + 2, view.ImageSize);
-  std::copy(viewport + 2, viewport + 4, view.ImageOrigin);
+  std::copy(viewport, viewport + 2, view.ViewportSize);
+  std::copy(viewport + 2, viewport + 4, view.ViewportOrigin);
   TranslateRays(projection, eyeToIndex, view);
   camera->GetClippingRange(view.NearDistance, view.FarDistance);
   TranslateExtent(image, volume, view);
+  FindImage(view);
   TranslateClipping(mapper->GetClippingPlanes(), worldToIndex, view);
   TranslateCropping(mapper, image, volume, view);
   TranslateIsovalues(property, volume, scene);

@@ -42,13 +42,13 @@ vtkIdType CountCells(vtkCompressedVolume* volume)
 }
 }
 
-void DrawSelection(vtkHardwareSelector* selector, vtkOpenGLState* state,
+void DrawSelection(vtkHardwareSelector* selector, vtkOpenGLState* state, const ViewGeometry& view,
   vtkCompressedVolume* volume, ProgressivePipeline& pipeline)
 {
   selector->BeginRenderProp();
   const SelectedId selected = FindSelected(selector);
   selector->UpdateMaximumCellId(CountCells(volume));
-  const DrawingState drawing(state, false);
+  const DrawingState drawing(state, view, false);
   pipeline.Select(selected);
   selector->EndRenderProp();
 }

@@ -8,9 +8,10 @@ class ProgressivePipeline;
 class vtkCompressedVolume;
 class vtkHardwareSelector;
 class vtkOpenGLState;
+struct ViewGeometry;
 
 /// Draws what the selector asks for in its present pass. The pipeline's image is complete.
-void DrawSelection(vtkHardwareSelector* selector, vtkOpenGLState* state,
+void DrawSelection(vtkHardwareSelector* selector, vtkOpenGLState* state, const ViewGeometry& view,
   vtkCompressedVolume* volume, ProgressivePipeline& pipeline);
 
 #endif

@@ -19,8 +19,8 @@ constexpr int Width = 8, Height = 4;
 ViewGeometry RaysOf(vtkCamera* camera)
 {
   ViewGeometry view = {};
-  view.ImageSize[0] = Width;
-  view.ImageSize[1] = Height;
+  view.ViewportSize[0] = Width;
+  view.ViewportSize[1] = Height;
   vtkNew<vtkMatrix4x4> identity;
   TranslateRays(
     camera->GetProjectionTransformMatrix(double(Width) / Height, -1, 1), identity, view);

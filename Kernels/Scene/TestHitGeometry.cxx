@@ -14,8 +14,8 @@ namespace
 ViewGeometry MakeView()
 {
   ViewGeometry view = {};
-  view.ImageSize[0] = 4;
-  view.ImageSize[1] = 2;
+  view.ViewportSize[0] = view.ImageSize[0] = 4;
+  view.ViewportSize[1] = view.ImageSize[1] = 2;
   for (PixelVector* origin : { &view.RayOrigin, &view.EyeOrigin })
   {
     origin->Base[2] = 10.0;
@@ -64,4 +64,39 @@ TEST(HitGeometry, DistancesOfAllPixels)
   distances = HitDistances(view, keys, std::vector<float>(8, 2.0f));
   EXPECT_FLOAT_EQ(distances[5], 2.0f);
   EXPECT_TRUE(std::isinf(distances[4]));
+}
+
+TEST(HitGeometry, DistancesOfAnImageInTheViewport)
+{
+  ViewGeometry view = MakeView();
+  view.EyeDirection.PerX[0] = 0.5;
+  const ViewGeometry whole = view;
+  view.ImageOrigin[0] = 1;
+  view.ImageOrigin[1] = 1;
+  view.ImageSize[0] = 2;
+  view.ImageSize[1] = 1;
+  const std::vector<float> distances = HitDistances(view, { glsl::NO_HIT, 7u }, {});
+  ASSERT_EQ(distances.size(), 8u);
+  std::vector<std::uint32_t> keys(8, glsl::NO_HIT);
+  keys[6] = 7u; // x = 2, y = 1
+  EXPECT_EQ(distances, HitDistances(whole, keys, {}));
+  EXPECT_TRUE(std::isfinite(distances[6]));
+}
+
+TEST(HitGeometry, PixelsOfAnImageInTheViewport)
+{
+  ViewGeometry view = MakeView();
+  EXPECT_EQ(ImagePixel(view, 3, 1), 7);
+  view.ImageOrigin[0] = 1;
+  view.ImageOrigin[1] = 1;
+  view.ImageSize[0] = 2;
+  view.ImageSize[1] = 1;
+  EXPECT_EQ(ImagePixel(view, 1, 1), 0);
+  EXPECT_EQ(ImagePixel(view, 2, 1), 1);
+  for (const int x : { 0, 3 })
+  {
+    EXPECT_FALSE(ImagePixel(view, x, 1));
+  }
+  EXPECT_FALSE(ImagePixel(view, 1, 0));
+  EXPECT_FALSE(ImagePixel(view, 1, 2));
 }

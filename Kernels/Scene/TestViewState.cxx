@@ -16,8 +16,8 @@ class ViewStateOfRenders : public testing::Test
 protected:
   void SetUp() override
   {
-    this->Scene.View.ImageSize[0] = 20;
-    this->Scene.View.ImageSize[1] = 10;
+    this->Scene.View.ViewportSize[0] = 20;
+    this->Scene.View.ViewportSize[1] = 10;
     this->Scene.View.RayDirection.Base[2] = -1.0;
     this->Scene.View.FarDistance = 100.0;
   }
@@ -53,6 +53,20 @@ TEST_F(ViewStateOfRenders, RoundingOfTheCameraGoesOnWithTheFirstRays)
   EXPECT_TRUE(this->GoesOn());
   EXPECT_EQ(this->State.GetScene().View.RayDirection.Base[2], -1.0);
   this->Scene.View.RayDirection.Base[2] = -1.0 - 1e-6;
+  EXPECT_FALSE(this->GoesOn());
+}
+
+TEST_F(ViewStateOfRenders, TheImageIsThatOfTheFirstRays)
+{
+  this->Scene.View.ImageSize[0] = 5;
+  this->GoesOn();
+  this->Scene.View.RayDirection.Base[2] = -1.0 - 1e-9;
+  this->Scene.View.ImageSize[0] = 6; // by rounding
+  this->Scene.View.ImageOrigin[1] = 1;
+  EXPECT_TRUE(this->GoesOn());
+  EXPECT_EQ(this->State.GetScene().View.ImageSize[0], 5);
+  EXPECT_EQ(this->State.GetScene().View.ImageOrigin[1], 0);
+  this->Scene.View.ViewportOrigin[0] = 1;
   EXPECT_FALSE(this->GoesOn());
 }
 

@@ -78,6 +78,8 @@ bool HasSameHits(const ViewGeometry& a, const ViewGeometry& b)
   const double rangeOfB[] = { b.NearDistance, b.FarDistance, 0.0 };
   exact.NearDistance = a.NearDistance;
   exact.FarDistance = a.FarDistance;
+  std::copy(a.ImageSize, a.ImageSize + 2, exact.ImageSize);
+  std::copy(a.ImageOrigin, a.ImageOrigin + 2, exact.ImageOrigin);
   // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
   return NearlySame(rangeOfA, rangeOfB) && std::memcmp(&a, &exact, sizeof(a)) == 0;
 }
@@ -107,7 +109,7 @@ bool ViewState::Update(vtkRenderer* renderer, const PipelineScene& scene,
   this->Eye = eye;
   int origin[2];
   renderer->GetTiledSizeAndOrigin(
-    &this->ViewportSize[0], &this->ViewportSize[1], &origin[0], &origin[1]);
+    &this->RendererSize[0], &this->RendererSize[1], &origin[0], &origin[1]);
   vtkMatrix4x4::Invert(camera->GetModelViewTransformMatrix(), this->EyeToWorld);
   const ViewGeometry view = continues ? this->Scene.View : scene.View;
   this->Scene = scene;
@@ -128,14 +130,14 @@ bool ViewState::IsSettled() const
   return this->RendersOfView >= RendersBeforeRefining;
 }
 
-bool ViewState::ViewportToImage(int& x, int& y) const
+bool ViewState::RendererToViewport(int& x, int& y) const
 {
-  if (x < 0 || y < 0 || x >= this->ViewportSize[0] || y >= this->ViewportSize[1])
+  if (x < 0 || y < 0 || x >= this->RendererSize[0] || y >= this->RendererSize[1])
   {
     return false;
   }
-  x = static_cast<int>((x + 0.5) * this->Scene.View.ImageSize[0] / this->ViewportSize[0]);
-  y = static_cast<int>((y + 0.5) * this->Scene.View.ImageSize[1] / this->ViewportSize[1]);
+  x = static_cast<int>((x + 0.5) * this->Scene.View.ViewportSize[0] / this->RendererSize[0]);
+  y = static_cast<int>((y + 0.5) * this->Scene.View.ViewportSize[1] / this->RendererSize[1]);
   return true;
 }
 

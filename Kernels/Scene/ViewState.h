@@ -31,7 +31,8 @@ struct Obstacles
 Obstacles FindObstacles(vtkRenderer* renderer, vtkVolume* volume);
 
 /// Whether rays have the same hits in both. Cameras are compared with a relative tolerance of 1e-7
-/// (vtkWindowToImageFilter perturbs the view angle by rounding), everything else exactly.
+/// (vtkWindowToImageFilter perturbs the view angle by rounding), everything else exactly; the image
+/// follows from it.
 bool HasSameHits(const ViewGeometry& a, const ViewGeometry& b);
 
 class ViewState
@@ -59,10 +60,10 @@ public:
   /// Whether one view has been rendered often enough to expect that no other takes turns with it.
   bool IsSettled() const;
 
-  ///@{ Of the image's pixels, which may be more than the viewport's: a pass may draw into a larger
-  /// framebuffer of its own.
-  /// Turns a pixel of the viewport into the image's; false if it lies outside.
-  bool ViewportToImage(int& x, int& y) const;
+  ///@{ Of the viewport's pixels, which may be more than the renderer's: a pass may draw into a
+  /// larger framebuffer of its own.
+  /// Turns a pixel of the renderer into the viewport's; false if it lies outside.
+  bool RendererToViewport(int& x, int& y) const;
   /// Finds the world position with parameter t on a pixel's ray.
   void FindPosition(int x, int y, double t, double position[3]) const;
   ///@}
@@ -76,7 +77,7 @@ private:
   bool NewPalette = false;
   Obstacles SceneObstacles;
   vtkNew<vtkMatrix4x4> EyeToWorld;
-  int ViewportSize[2] = { 0, 0 };
+  int RendererSize[2] = { 0, 0 };
   const vtkRenderer* Renderer = nullptr; ///< of the last render; it may be gone
   int Eye = 0;                           ///< 1: left
   int RendersOfView;                     ///< since another view was rendered

@@ -10,7 +10,7 @@
 struct BufferSizes
 {
   std::int64_t Macrocells = 0;
-  std::int64_t Pixels = 0;
+  std::int64_t Pixels = 0;      ///< that there is room for: an image may have fewer
   std::int64_t Blocks = 0;      ///< of the volume
   std::int64_t Slots = 0;       ///< blocks that the cache holds, or all blocks of the volume
   std::int64_t MapPages = 0;    ///< of the block map; 0 without a cache

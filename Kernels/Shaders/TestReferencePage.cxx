@@ -26,7 +26,8 @@ not run.
 
 ## Buffers
 
-Bytes are for *P* pixels, *B* blocks in whole macrocells, and *S* cache slots. The host is C++.
+Bytes are for *P* pixels of the image, *B* blocks in whole macrocells, and *S* cache slots. The
+host is C++.
 
 | buffer | bytes | needed | written by | read by | purpose |
 |---|---|---|---|---|---|

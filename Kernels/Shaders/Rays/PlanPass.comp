@@ -73,7 +73,7 @@ void PlanCasting()
 {
   bool noneIsNew = control.Rays == control.WaitingRays + control.ContinuingRays;
   bool stragglers = noneIsNew && cache.PixelsPerStraggler > 0u &&
-    control.Rays <= ImagePixels() / cache.PixelsPerStraggler;
+    control.Rays <= ViewportPixels() / cache.PixelsPerStraggler;
   uvec2 groups =
     Folded(stragglers ? control.Rays : GroupsOf(control.Rays, CAST_RAYS_GROUP_SIZE));
   control.CastGroups.X = stragglers ? 0u : groups.x;

@@ -40,11 +40,12 @@ Wide3 PlanesT(Ray ray, ivec3 index)
   return Sum(ray.First, Product(ray.Spacing, uvec3(index)));
 }
 
-// Pixels are numbered in rows from the bottom left.
+// Where in the viewport a pixel is: those of the image are numbered in rows from the bottom left.
+// The rays are the viewport's, so that they are the same to the bit whatever part of it has rays.
 uvec2 PixelPlace(uint pixel)
 {
   uint width = uint(view.ImageSize.x);
-  return uvec2(pixel % width, pixel / width);
+  return uvec2(view.FirstPixel) + uvec2(pixel % width, pixel / width);
 }
 
 // So many times what is gained for each half pixel.
@@ -285,10 +286,16 @@ uint TileOrderOf(uint pixel)
   return PIXELS_PER_TILE * tile + TILE_SIDE * (y % TILE_SIDE) + x % TILE_SIDE;
 }
 
+// Measures how much work the GPU takes at once, however small a part of the viewport has rays.
+uint ViewportPixels()
+{
+  return uint(view.ViewportSize.x * view.ViewportSize.y);
+}
+
 // Number of blocks that each of `rays` rays may ask for (N_spec of the paper).
 uint Speculation(uint rays)
 {
-  uint blocks = ImagePixels() / (PIXELS_PER_BLOCK_AHEAD * max(rays, 1u));
+  uint blocks = ViewportPixels() / (PIXELS_PER_BLOCK_AHEAD * max(rays, 1u));
   return clamp(blocks, 1u, cache.SpeculationLimit);
 }
 

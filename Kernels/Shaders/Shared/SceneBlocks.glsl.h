@@ -4,7 +4,7 @@
 // this file. Padding is spelt out: std140 aligns a vector of three like one of four, but lets a
 // scalar fill the gap.
 
-// A vector that is Base + x PerX + y PerY at the pixel's centre (x, y).
+// A vector that is Base + x PerX + y PerY at the pixel's centre (x, y) of the viewport.
 struct PixelVector
 {
   vec3 Base;
@@ -74,11 +74,13 @@ UNIFORM_BLOCK(View, VIEW_BINDING)
   int NumberOfIsovalues;
   ivec3 LastDrawn;
   int NumberOfClippingPlanes;
-  ivec2 ImageSize;
+  ivec2 ImageSize;   // of the rectangle of the viewport that has rays
   ivec2 ImageOrigin; // in the window
-  int DrawnRegions;  // a bit for each cropping region
-  int HasRays;       // 0: no ray meets what is drawn
-  float FirstDepth;  // of the origins
+  ivec2 FirstPixel;  // of the image, in the viewport
+  ivec2 ViewportSize;
+  int DrawnRegions; // a bit for each cropping region
+  int HasRays;      // 0: no ray meets what is drawn
+  float FirstDepth; // of the origins
   float DepthOfWay;
   FloatSum Isovalues[MAX_ISOVALUES]; // in the units of the stream
 }

@@ -44,6 +44,7 @@ _PROTOTYPES = {
         None, _UINT, _UINT, _UINT, ctypes.c_int, _ADDRESS, ctypes.c_ubyte
     ),
     "glDispatchCompute": ctypes.CFUNCTYPE(None, _UINT, _UINT, _UINT),
+    "glDispatchComputeIndirect": ctypes.CFUNCTYPE(None, _SIZE),
     "glEnable": ctypes.CFUNCTYPE(None, _UINT),
     "glGetBufferSubData": ctypes.CFUNCTYPE(None, _UINT, _SIZE, _SIZE, _ADDRESS),
     "glGetError": ctypes.CFUNCTYPE(_UINT),

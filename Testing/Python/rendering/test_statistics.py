@@ -210,7 +210,7 @@ ALWAYS = {"control", "pass_statistics", "macrocells", "hits", "cache_values", "s
 @pytest.fixture(scope="module")
 def volume():
     image = progiso.compress(make_image(noise(SHAPE)), rate=1)
-    return image, orbit(reference_volume(image), 1, 4)
+    return image, orbit(reference_volume(image), 1, 4, view_angle=20)  # it covers the window
 
 
 def needs(volume, lit=True, **settings):
