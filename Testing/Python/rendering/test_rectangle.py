@@ -245,11 +245,11 @@ def test_many_small_volumes():
 def test_rounding_of_the_camera_goes_on(image):
     """A camera that is the same but for rounding continues the image, wherever the edges of the
     rectangle fall."""
-    scene = Scene(image, 0.1, camera(0, 0), SIZE)
+    # a pixel is a voxel, and the volume ends at pixels' centres
+    scene = Scene(image, 0.1, camera(0.5, 0.5, parallel_scale=60.0), SIZE)
     expected, picture = scene.depth(), scene.picture()
-    angle = scene.renderer.GetActiveCamera().GetViewAngle()
     for step in range(-20, 20):
-        scene.renderer.GetActiveCamera().SetViewAngle(angle * (1 + 1e-10 * step))
+        scene.renderer.GetActiveCamera().SetParallelScale(60 * (1 + 1e-10 * step))
         assert Calls().counted(scene.window.Render).dispatches == 0
         assert progiso.depth(scene.mapper).tobytes() == expected.tobytes()
     assert np.array_equal(scene.picture(), picture)
