@@ -9,7 +9,7 @@
 
 namespace
 {
-constexpr int MostBits = 29;     // of coordinates before the point, so that no sum wraps
+constexpr int MostBits = 26;     // of coordinates before the point: see SpeedOf in Rays.glsl
 constexpr double Margin = 1e-6;  // of the depths, for the rounding of what they come from
 constexpr double Farthest = 1e9; // cell, beyond all volumes
 // Of the few numbers of a view, so that nothing is lost where a volume is far away.

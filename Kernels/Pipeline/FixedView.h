@@ -20,7 +20,7 @@ DrawnDepths FindDrawnDepths(const ViewGeometry& view);
 double HitDepth(const DrawnDepths& depths, std::uint32_t key);
 
 /// Translates a view for the GPU. Its origins and ways are off by 2^-31 voxels at most. No ray is
-/// drawn where the image is wider than 2^29 voxels: all of a volume would be less than a pixel.
+/// drawn where the image is wider than 2^26 voxels: all of a volume would be less than a pixel.
 glsl::View FixView(const ViewGeometry& view);
 
 #endif

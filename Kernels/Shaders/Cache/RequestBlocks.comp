@@ -22,7 +22,8 @@ void LookAhead(uint pixel, uint speculation)
   GridCursor at = OutsideGrid();
   for (uint i = 0u; i < speculation && FindActiveBlock(ray, block, at); ++i)
   {
-    ivec3 reach = DualGridReach(ray, block, BlockEntry(ray, block), BlockExit(ray, block));
+    BlockCrossing crossing = CrossBlock(ray, block);
+    ivec3 reach = DualGridReach(ray, block, crossing.Enter, crossing.Leave, crossing.Exits);
     ahead[atomicAdd(aheadCount, 1u)] =
       uvec2(BlockIndex(block), reach.x + 2 * reach.y + 4 * reach.z);
     if (!NextBlock(ray, block))

@@ -18,7 +18,7 @@ struct RayLine
 struct Ray
 {
   Wide3 First;      // parameters of the planes with index 0,
-  Wide3 Spacing;    // and from each plane to the next
+  Wide3 Spacing;    // and from each plane to the next one that the ray meets
   vec3 CellsPerT;   // not negative
   vec3 Begin;       // place in the first cell at Enter, from 0 to 1 in the direction of the ray
   ivec3 FirstCell;  // at Enter, but for planes that it lies on
@@ -34,10 +34,16 @@ const Wide NEVER_MET = Wide(3 << (WAY_BITS - 33), 0u);
 // Beyond all that a ray is compared with, and no sum of two wraps.
 const Wide FARTHEST = Wide(1 << 29, 0u);
 
+// -1 on each axis on which the ray goes backwards, else 0.
+ivec3 IsBackwards(Ray ray)
+{
+  return ray.Step >> 31;
+}
+
 // Parameters at which a ray crosses the plane with this index on each axis.
 Wide3 PlanesT(Ray ray, ivec3 index)
 {
-  return Sum(ray.First, Product(ray.Spacing, uvec3(index)));
+  return Sum(ray.First, Negated(Product(ray.Spacing, uvec3(index)), IsBackwards(ray)));
 }
 
 // Where in the viewport a pixel is: those of the image are numbered in rows from the bottom left.
@@ -75,7 +81,7 @@ struct Speed
 {
   ivec3 Backwards; // -1 where a coordinate falls, else 0
   Wide3 Inverse;   // 2^(126 - Zeros) / the absolute way
-  ivec3 Zeros;     // leading ones of the absolute way
+  ivec3 Zeros;     // leading ones of the absolute way: 5 or more
 };
 
 Speed SpeedOf(Wide3 way)
@@ -97,7 +103,7 @@ Wide3 ReachedAt(Speed speed, Wide3 change)
   Wide3 scaled = HighProduct(Negated(change, change.High >> 31), speed.Inverse);
   ivec3 bits = speed.Zeros - (126 - 64 - WAY_BITS);
   ivec3 far = -ivec3(lessThan(LeadingZeros(scaled) - bits, ivec3(3)));
-  Wide3 t = ShiftRight(ShiftLeft(scaled, max(bits, ivec3(0))), max(-bits, ivec3(0)));
+  Wide3 t = ShiftLeft(scaled, bits);
   return Negated(Choose(t, AllOf(FARTHEST), far), before);
 }
 
@@ -183,28 +189,33 @@ Wide EnterT(RayLine line, Speed speed)
   return LargerOf(Wide(0, 0u), LargestOf(ReachedAt(speed, ChangeToPlanes(line, planes))));
 }
 
-// Places the planes of all cells, from those through which the ray leaves its first cell.
-void PlacePlanes(RayLine line, Speed speed, inout Ray ray)
+// A ray that is outside where it should enter has left through other planes before; rounding by
+// some units does not count.
+bool IsDrawnAt(Wide3 place)
 {
-  Wide3 place = PlaceAt(line, ray.Enter);
-  ray.FirstCell = clamp(place.High, view.FirstDrawn, view.LastDrawn - 1);
-  vec3 begin = PlaceInCell(place, ray.FirstCell);
-  ray.Begin = mix(begin, 1.0 - begin, notEqual(speed.Backwards, ivec3(0)));
-  ivec3 next = ray.FirstCell + (1 + ray.Step) / 2;
-  Wide3 spacing = SpacingOf(speed);
-  Wide3 at = ReachedAt(speed, ChangeToPlanes(line, next));
-  at = SmallerOf(SmallerOf(at, Sum(AllOf(ray.Enter), spacing)), AllOf(NEVER_MET));
-  at = LargerOf(at, AllOf(ray.Enter)); // whatever the rounding: the ray is in its first cell
-  ray.Spacing = Negated(spacing, speed.Backwards);
-  ray.First = Difference(at, Product(ray.Spacing, uvec3(next)));
+  const Wide3 rounding = AllOf(Wide(0, 16u));
+  Wide3 sinceFirst = Difference(Sum(place, rounding), Wide3(view.FirstDrawn, uvec3(0u)));
+  Wide3 untilLast = Difference(Wide3(view.LastDrawn, uvec3(0u)), Difference(place, rounding));
+  return all(greaterThanEqual(sinceFirst.High | untilLast.High, ivec3(0)));
 }
 
-// Where those of the last planes are met that are: by the planes' own formula, so that no cell
-// behind them is entered.
-Wide LastT(Ray ray, Speed speed, Wide3 ends)
+// Places the planes of all cells, from those through which the ray leaves its first cell: `next`.
+void PlacePlanes(RayLine line, Speed speed, ivec3 next, inout Ray ray)
 {
-  ivec3 met = Difference(ends, AllOf(NEVER_MET)).High >> 31; // others' parameters wrap
-  return SmallestOf(Choose(ends, PlanesT(ray, LastPlanes(speed)), met));
+  ray.Spacing = SpacingOf(speed);
+  Wide3 at = ReachedAt(speed, ChangeToPlanes(line, next));
+  at = SmallerOf(SmallerOf(at, Sum(AllOf(ray.Enter), ray.Spacing)), AllOf(NEVER_MET));
+  at = LargerOf(at, AllOf(ray.Enter)); // whatever the rounding: the ray is in its first cell
+  ray.First = Difference(at, Negated(Product(ray.Spacing, uvec3(next)), speed.Backwards));
+}
+
+// Parameter at which the ray leaves through one of the last planes, by the planes' own formula, so
+// that no cell behind them is entered. Parameters that wrap are of planes that are not met.
+Wide LastT(Ray ray, ivec3 next, ivec3 last)
+{
+  vec3 way = vec3(abs(last - next)) * ToFloat(ray.Spacing);
+  ivec3 met = -ivec3(lessThan(way, vec3(ToFloat(NEVER_MET))));
+  return SmallestOf(Choose(AllOf(NEVER_MET), PlanesT(ray, last), met));
 }
 
 // The ray through the centre of a pixel. It misses what is drawn if it leaves before it enters.
@@ -223,10 +234,14 @@ Ray CameraRay(uint pixel)
 #if defined(OBSTRUCTED) && defined(BUFFER_HITS)
   ray.Leave = SmallerOf(ray.Leave, ObstacleT(ObstacleOf(pixel)));
 #endif
-  Wide3 ends = ReachedAt(speed, ChangeToPlanes(line, LastPlanes(speed)));
-  bool misses = IsLess(SmallerOf(ray.Leave, SmallestOf(ends)), ray.Enter);
-  PlacePlanes(line, speed, ray);
-  ray.Leave = misses ? Wide(-1, 0u) : SmallerOf(ray.Leave, LastT(ray, speed, ends));
+  Wide3 place = PlaceAt(line, SmallerOf(ray.Enter, WAY));
+  bool misses = IsLess(ray.Leave, ray.Enter) || !IsDrawnAt(place);
+  ray.FirstCell = clamp(place.High, view.FirstDrawn, view.LastDrawn - 1);
+  vec3 begin = PlaceInCell(place, ray.FirstCell);
+  ray.Begin = mix(begin, 1.0 - begin, notEqual(speed.Backwards, ivec3(0)));
+  ivec3 next = ray.FirstCell + (1 + ray.Step) / 2;
+  PlacePlanes(line, speed, next, ray);
+  ray.Leave = misses ? Wide(-1, 0u) : SmallerOf(ray.Leave, LastT(ray, next, LastPlanes(speed)));
   return ray;
 }
 

@@ -25,14 +25,19 @@ ivec3 ExitPlanes(Ray ray, ivec3 element, int side)
   return (element + (1 + ray.Step) / 2) * side;
 }
 
-Wide BlockEntry(Ray ray, ivec3 block)
+// Parameters between which a ray is in a block, and of the planes through which it leaves it.
+struct BlockCrossing
 {
-  return LargerOf(ray.Enter, LargestOf(PlanesT(ray, EntryPlanes(ray, block, BLOCK_SIDE))));
-}
+  Wide Enter, Leave;
+  Wide3 Exits;
+};
 
-Wide BlockExit(Ray ray, ivec3 block)
+BlockCrossing CrossBlock(Ray ray, ivec3 block)
 {
-  return SmallerOf(ray.Leave, SmallestOf(PlanesT(ray, ExitPlanes(ray, block, BLOCK_SIDE))));
+  Wide3 exits = PlanesT(ray, ExitPlanes(ray, block, BLOCK_SIDE));
+  Wide3 entries = Difference(exits, Doubled(ray.Spacing, BLOCK_SIDE_LOG2));
+  return BlockCrossing(LargerOf(ray.Enter, LargestOf(entries)),
+    SmallerOf(ray.Leave, SmallestOf(exits)), exits);
 }
 
 // Tells whether a range has a value below the isovalue and one that is not.
@@ -98,9 +103,11 @@ bool SkipMacrocell(Ray ray, inout ivec3 block)
     return false;
   }
   ivec3 within = block;
+  Wide3 planes = PlanesT(ray, ExitPlanes(ray, block, BLOCK_SIDE));
   for (int i = 1; i < MACROCELL_SIDE; ++i)
   {
-    within += StepBy(ray, within, t);
+    within += NotGreater(planes, t) * ray.Step;
+    planes = Sum(planes, Doubled(ray.Spacing, BLOCK_SIDE_LOG2));
   }
   // on the axes on which the ray leaves the macrocell: the block just behind it
   ivec3 behind = MACROCELL_SIDE * macrocell - 1 + (MACROCELL_SIDE + 1) * (1 + ray.Step) / 2;

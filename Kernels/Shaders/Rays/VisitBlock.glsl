@@ -14,9 +14,9 @@ struct BlockVisit
 
 BlockVisit PlanVisit(Ray ray, ivec3 block)
 {
-  Wide enter = BlockEntry(ray, block);
-  Wide leave = BlockExit(ray, block);
-  return BlockVisit(enter, leave, DualGridReach(ray, block, enter, leave));
+  BlockCrossing at = CrossBlock(ray, block);
+  return BlockVisit(
+    at.Enter, at.Leave, DualGridReach(ray, block, at.Enter, at.Leave, at.Exits));
 }
 
 // Is a block of this visit not in the cache? Finds their slots.

@@ -169,7 +169,13 @@ Wide3 ShiftLeft(Wide3 a, ivec3 bits)
   return Wide3(ivec3(high), part.Low << rest);
 }
 
-// Of numbers without a sign, likewise.
+// Times 2^bits, by 1 to 31 bits.
+Wide3 Doubled(Wide3 a, int bits)
+{
+  return Wide3(a.High << bits | ivec3(a.Low >> (32 - bits)), a.Low << bits);
+}
+
+// Of numbers without a sign, by 0 to 63 bits.
 Wide3 ShiftRight(Wide3 a, ivec3 bits)
 {
   Wide3 byWord = Wide3(ivec3(0), uvec3(a.High));

@@ -14,12 +14,11 @@
 ivec3 CellAt(Ray ray, ivec3 block, Wide t)
 {
   ivec3 entry = EntryPlanes(ray, block, BLOCK_SIDE);
-  Wide3 spacing = Negated(ray.Spacing, ray.Step >> 31);
   Wide3 plane = PlanesT(ray, entry);
   ivec3 crossed = ivec3(0);
   for (int i = 1; i < BLOCK_SIDE; ++i)
   {
-    plane = Sum(plane, spacing);
+    plane = Sum(plane, ray.Spacing);
     crossed += NotGreater(plane, t);
   }
   return entry - (1 - ray.Step) / 2 + crossed * ray.Step;
@@ -115,7 +114,7 @@ vec3 PlaceAlong(Ray ray, Wide3 entries, Wide t)
 // From t0 to t1, which both lie in the cell; exact on the faces that the ray crosses there.
 CellPath PathThrough(Ray ray, ivec3 cell, Wide t0, Wide t1, Wide3 exits)
 {
-  Wide3 entries = PlanesT(ray, EntryPlanes(ray, cell, 1));
+  Wide3 entries = Difference(exits, ray.Spacing);
   vec3 u0 = mix(PlaceAlong(ray, entries, t0), vec3(0.0), AreEqual(entries, t0));
   vec3 u1 = mix(PlaceAlong(ray, entries, t1), vec3(1.0), AreEqual(exits, t1));
   bvec3 backwards = lessThan(ray.Step, ivec3(0));
@@ -191,6 +190,14 @@ bool IntersectCell(CellPath path, Corners w, out Hit hit)
   return hit.Key != NO_HIT;
 }
 
+// Moves to the next cell, which the ray enters at parameter t; `exits` are those of the cell.
+void LeaveCell(Ray ray, Wide t, inout ivec3 cell, inout Wide3 exits)
+{
+  ivec3 crossed = NotGreater(exits, t);
+  cell += crossed * ray.Step;
+  exits = Sum(exits, Wide3(ray.Spacing.High & -crossed, ray.Spacing.Low & uvec3(-crossed)));
+}
+
 // First hit of the ray in the block between parameters t0 and end; false if there is none. The walk
 // to the next cell that the surface crosses is a loop of its own, so that the lanes of a group meet
 // again for the costly part.
@@ -198,17 +205,16 @@ bool IntersectBlock(Ray ray, ivec3 block, Wide t0, Wide end, out Hit hit)
 {
   hit = MISS;
   ivec3 cell = CellAt(ray, block, t0);
+  Wide3 exits = PlanesT(ray, ExitPlanes(ray, cell, 1));
   uvec2 hidden = HiddenCellsOf(block);
   for (int tested = 0; tested < 16; ++tested) // a ray crosses at most 10 cells of 4^3
   {
     Corners w;
-    Wide3 exits;
     Wide t1;
     bool last;
     bool crossed = false;
     for (int walked = 0; walked < 16; ++walked)
     {
-      exits = PlanesT(ray, ExitPlanes(ray, cell, 1));
       t1 = SmallestOf(exits);
       last = !IsLess(t1, end);
       w = LoadCorners(cell);
@@ -217,7 +223,7 @@ bool IntersectBlock(Ray ray, ivec3 block, Wide t0, Wide end, out Hit hit)
       {
         break;
       }
-      cell += NotGreater(exits, t1) * ray.Step;
+      LeaveCell(ray, t1, cell, exits);
       t0 = t1;
     }
     t1 = SmallerOf(t1, end);
@@ -229,7 +235,7 @@ bool IntersectBlock(Ray ray, ivec3 block, Wide t0, Wide end, out Hit hit)
     {
       return false;
     }
-    cell += NotGreater(exits, t1) * ray.Step;
+    LeaveCell(ray, t1, cell, exits);
     t0 = t1;
   }
   return false;
