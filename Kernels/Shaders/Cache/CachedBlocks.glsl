@@ -10,11 +10,17 @@ uint NumberOfSlots()
   return cache.SlotCapacity;
 }
 
+// The slot of a block by the number of its macrocell and its own there; NONE if it has none.
+uint SlotIn(uint macrocell, uint local)
+{
+  uint page = macrocells[macrocell].Page;
+  return page >= CLAIMED ? NONE : mapPages[page].Slots[local];
+}
+
 // NONE if the block is not in the cache.
 uint SlotOf(ivec3 block)
 {
-  uint page = macrocells[MacrocellIndex(MacrocellOf(block))].Page;
-  return page >= CLAIMED ? NONE : mapPages[page].Slots[LocalIndex(block)];
+  return SlotIn(MacrocellIndex(MacrocellOf(block)), LocalIndex(block));
 }
 
 // What planes of samples on x, y and z add to the index of a sample in its block.
@@ -34,23 +40,44 @@ uvec3 NextSampleOffsets(ivec3 planes, uvec3 offsets)
 // indexes them: what is indexed by a variable does not stay in registers.
 uvec4 lowSlots, highSlots;
 
-uint SlotBeside(ivec3 first, ivec3 reach, ivec3 side)
+// What a block adds on each axis to the number of its macrocell, and to its own there.
+struct PlaceInMap
 {
-  return all(lessThanEqual(side, reach)) ? SlotOf(first + side) : 0u;
+  uvec3 Macrocell, Local;
+};
+
+PlaceInMap PlaceOf(ivec3 block)
+{
+  uvec3 strides = uvec3(1, volume.Macrocells.x, volume.Macrocells.x * volume.Macrocells.y);
+  const uvec3 localStrides = uvec3(1, MACROCELL_SIDE, MACROCELL_SIDE * MACROCELL_SIDE);
+  return PlaceInMap(uvec3(MacrocellOf(block)) * strides,
+    (uvec3(block) & uint(MACROCELL_SIDE - 1)) * localStrides);
+}
+
+// 0 where a ray does not reach to.
+uint SlotBeside(bool reached, uvec3 macrocell, uvec3 local)
+{
+  return reached
+    ? SlotIn(macrocell.x + macrocell.y + macrocell.z, local.x + local.y + local.z)
+    : 0u;
 }
 
 // Finds the slots of the blocks from `first` to first + reach, a component 0 or 1. Returns a bit
 // for each that is missing.
 uint FindSlots(ivec3 first, ivec3 reach)
 {
-  lowSlots.x = SlotBeside(first, reach, ivec3(0, 0, 0));
-  lowSlots.y = SlotBeside(first, reach, ivec3(1, 0, 0));
-  lowSlots.z = SlotBeside(first, reach, ivec3(0, 1, 0));
-  lowSlots.w = SlotBeside(first, reach, ivec3(1, 1, 0));
-  highSlots.x = SlotBeside(first, reach, ivec3(0, 0, 1));
-  highSlots.y = SlotBeside(first, reach, ivec3(1, 0, 1));
-  highSlots.z = SlotBeside(first, reach, ivec3(0, 1, 1));
-  highSlots.w = SlotBeside(first, reach, ivec3(1, 1, 1));
+  PlaceInMap near = PlaceOf(first), far = PlaceOf(first + 1);
+  uvec3 m = near.Macrocell, n = far.Macrocell;
+  uvec3 l = near.Local, k = far.Local;
+  bvec3 r = greaterThan(reach, ivec3(0));
+  lowSlots.x = SlotBeside(true, m, l);
+  lowSlots.y = SlotBeside(r.x, uvec3(n.x, m.yz), uvec3(k.x, l.yz));
+  lowSlots.z = SlotBeside(r.y, uvec3(m.x, n.y, m.z), uvec3(l.x, k.y, l.z));
+  lowSlots.w = SlotBeside(r.x && r.y, uvec3(n.xy, m.z), uvec3(k.xy, l.z));
+  highSlots.x = SlotBeside(r.z, uvec3(m.xy, n.z), uvec3(l.xy, k.z));
+  highSlots.y = SlotBeside(r.x && r.z, uvec3(n.x, m.y, n.z), uvec3(k.x, l.y, k.z));
+  highSlots.z = SlotBeside(r.y && r.z, uvec3(m.x, n.yz), uvec3(l.x, k.yz));
+  highSlots.w = SlotBeside(all(r), n, k);
   uvec4 low = uvec4(equal(lowSlots, uvec4(NONE))) << uvec4(0u, 1u, 2u, 3u);
   uvec4 high = uvec4(equal(highSlots, uvec4(NONE))) << uvec4(4u, 5u, 6u, 7u);
   return low.x | low.y | low.z | low.w | high.x | high.y | high.z | high.w;
