@@ -235,13 +235,17 @@ Ray CameraRay(uint pixel)
   ray.Leave = SmallerOf(ray.Leave, ObstacleT(ObstacleOf(pixel)));
 #endif
   Wide3 place = PlaceAt(line, SmallerOf(ray.Enter, WAY));
-  bool misses = IsLess(ray.Leave, ray.Enter) || !IsDrawnAt(place);
+  if (IsLess(ray.Leave, ray.Enter) || !IsDrawnAt(place))
+  {
+    ray.Leave = Difference(ray.Enter, Wide(0, 1u));
+    return ray;
+  }
   ray.FirstCell = clamp(place.High, view.FirstDrawn, view.LastDrawn - 1);
   vec3 begin = PlaceInCell(place, ray.FirstCell);
   ray.Begin = mix(begin, 1.0 - begin, notEqual(speed.Backwards, ivec3(0)));
   ivec3 next = ray.FirstCell + (1 + ray.Step) / 2;
   PlacePlanes(line, speed, next, ray);
-  ray.Leave = misses ? Wide(-1, 0u) : SmallerOf(ray.Leave, LastT(ray, next, LastPlanes(speed)));
+  ray.Leave = SmallerOf(ray.Leave, LastT(ray, next, LastPlanes(speed)));
   return ray;
 }
 
@@ -283,22 +287,35 @@ uint PixelsInTiles()
   return PIXELS_PER_TILE * Tiles(view.ImageSize.x) * Tiles(view.ImageSize.y);
 }
 
+// In a tile, each 2^n pixels in order from a multiple of it are a square or two: whatever the number
+// of lanes that run in step, their pixels are neighbours. From the lowest bit on, an order has two
+// bits of x, two of y, the third of x and the third of y.
+uvec2 PlaceInTile(uint order)
+{
+  return uvec2((order & 3u) | (order >> 2u & 4u), (order >> 2u & 3u) | (order >> 3u & 4u));
+}
+
+uint OrderInTile(uvec2 place)
+{
+  return (place.x & 3u) | (place.y & 3u) << 2u | (place.x & 4u) << 2u | (place.y & 4u) << 3u;
+}
+
 // NONE where the last tiles reach beyond the image.
 uint PixelInTileOrder(uint order)
 {
   uint tile = order / PIXELS_PER_TILE;
-  uint x = TILE_SIDE * (tile % Tiles(view.ImageSize.x)) + order % TILE_SIDE;
-  uint y = TILE_SIDE * (tile / Tiles(view.ImageSize.x)) + (order / TILE_SIDE) % TILE_SIDE;
-  bool inImage = x < uint(view.ImageSize.x) && y < uint(view.ImageSize.y);
-  return inImage ? y * uint(view.ImageSize.x) + x : NONE;
+  uint width = Tiles(view.ImageSize.x);
+  uvec2 place = TILE_SIDE * uvec2(tile % width, tile / width) + PlaceInTile(order % PIXELS_PER_TILE);
+  bool inImage = all(lessThan(place, uvec2(view.ImageSize)));
+  return inImage ? place.y * uint(view.ImageSize.x) + place.x : NONE;
 }
 
 uint TileOrderOf(uint pixel)
 {
-  uint x = pixel % uint(view.ImageSize.x);
-  uint y = pixel / uint(view.ImageSize.x);
-  uint tile = (y / TILE_SIDE) * Tiles(view.ImageSize.x) + x / TILE_SIDE;
-  return PIXELS_PER_TILE * tile + TILE_SIDE * (y % TILE_SIDE) + x % TILE_SIDE;
+  uvec2 place = PixelPlace(pixel);
+  uvec2 tile = place / TILE_SIDE;
+  return PIXELS_PER_TILE * (tile.y * Tiles(view.ImageSize.x) + tile.x) +
+    OrderInTile(place % TILE_SIDE);
 }
 
 // Measures how much work the GPU takes at once, however small a part of the viewport has rays.
