@@ -120,6 +120,7 @@ void vtkProgressiveIsosurfaceMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MemoryBudget: " << this->MemoryBudget << "\n";
   os << indent << "DecodeWholeVolume: " << this->DecodeWholeVolume << "\n";
   os << indent << "LargestBuffer: " << this->LargestBuffer << "\n";
+  os << indent << "PixelsPerStraggler: " << this->PixelsPerStraggler << "\n";
   os << indent << "DetailedStatistics: " << this->DetailedStatistics << "\n";
   os << indent << "MaximumPassesPerRender: " << this->MaximumPassesPerRender << "\n";
   os << indent << "TimeAllowance: " << this->TimeAllowance << "\n";
@@ -369,6 +370,7 @@ bool vtkProgressiveIsosurfaceMapper::UpdatePipeline(bool newImage, bool mayWait)
   PipelineSettings settings;
   settings.MemoryBudget = this->MemoryBudget;
   settings.LargestBuffer = this->LargestBuffer;
+  settings.PixelsPerStraggler = this->PixelsPerStraggler;
   settings.SpeculationLimit = this->SpeculationLimit;
   settings.DecodeWholeVolume = this->DecodeWholeVolume;
   settings.Detailed = this->DetailedStatistics;

@@ -190,6 +190,15 @@ public:
 
   ///@{
   /**
+   * For tests: a work group of its own casts each ray where fewer than one pixel of so many has a
+   * ray that is not done; 0: never. -1 (default): what suits the GPU. The image is the same.
+   */
+  vtkSetClampMacro(PixelsPerStraggler, int, -1, VTK_INT_MAX);
+  vtkGetMacro(PixelsPerStraggler, int);
+  ///@}
+
+  ///@{
+  /**
    * Whether the statistics include the milliseconds of each stage and the distinct blocks of each
    * pass. Costs time and 8 bytes per cache slot. Default off.
    */
@@ -308,6 +317,7 @@ protected:
   vtkTypeInt64 MemoryBudget = 0;
   bool DecodeWholeVolume = true;
   vtkTypeInt64 LargestBuffer = 0;
+  int PixelsPerStraggler = -1;
   bool DetailedStatistics = false;
   int MaximumPassesPerRender = 0;
   double TimeAllowance = 0.05;

@@ -355,6 +355,10 @@ void ProgressivePipeline::UploadCacheBlock()
 
 std::uint32_t ProgressivePipeline::ChoosePixelsPerStraggler()
 {
+  if (this->Settings.PixelsPerStraggler >= 0)
+  {
+    return static_cast<std::uint32_t>(this->Settings.PixelsPerStraggler);
+  }
   // a software renderer has no lanes to keep busy, and its work groups cost much
   const bool wanted = !this->Gpu->Gl.GetLimits().Software &&
     InfoOf(Stage::CastStragglers).IsNeeded(Moment::Pass, this->Needs);

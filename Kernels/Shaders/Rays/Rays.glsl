@@ -287,9 +287,9 @@ uint PixelsInTiles()
   return PIXELS_PER_TILE * Tiles(view.ImageSize.x) * Tiles(view.ImageSize.y);
 }
 
-// In a tile, each 2^n pixels in order from a multiple of it are a square or two: whatever the number
-// of lanes that run in step, their pixels are neighbours. From the lowest bit on, an order has two
-// bits of x, two of y, the third of x and the third of y.
+// In a tile, each 2^n pixels in order from a multiple of it are a square or two of them: however
+// many lanes run in step, their pixels are neighbours. From the lowest bit on, an order has two bits
+// of x, two of y, the third of x and the third of y.
 uvec2 PlaceInTile(uint order)
 {
   return uvec2((order & 3u) | (order >> 2u & 4u), (order >> 2u & 3u) | (order >> 3u & 4u));
@@ -305,7 +305,8 @@ uint PixelInTileOrder(uint order)
 {
   uint tile = order / PIXELS_PER_TILE;
   uint width = Tiles(view.ImageSize.x);
-  uvec2 place = TILE_SIDE * uvec2(tile % width, tile / width) + PlaceInTile(order % PIXELS_PER_TILE);
+  uvec2 first = TILE_SIDE * uvec2(tile % width, tile / width);
+  uvec2 place = first + PlaceInTile(order % PIXELS_PER_TILE);
   bool inImage = all(lessThan(place, uvec2(view.ImageSize)));
   return inImage ? place.y * uint(view.ImageSize.x) + place.x : NONE;
 }

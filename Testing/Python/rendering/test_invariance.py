@@ -61,6 +61,16 @@ def test_speculation(case, limit):
         assert passes > len(same(case, SpeculationLimit=64, **CACHED)["passes"])
 
 
+@pytest.mark.parametrize("speculation", [2, 64])
+@pytest.mark.parametrize("pixels", [1, 4, 32])
+def test_stragglers(case, pixels, speculation):
+    """A work group of its own casts a ray like a lane of one does; software renderers use it only
+    when they are told to."""
+    settings = {"SpeculationLimit": speculation, **CACHED}
+    assert "CastStragglers" in same(case, PixelsPerStraggler=pixels, **settings)["stages"]
+    assert "CastStragglers" not in same(case, PixelsPerStraggler=0, **settings)["stages"]
+
+
 @pytest.mark.parametrize("speculation", [1, 64])
 @pytest.mark.parametrize("share", [0, 0.01, 0.03, 0.1, 0.3, 0.7, 1, 2])
 def test_memory_budget(case, share, speculation):

@@ -216,6 +216,7 @@ def test_everything_prints(image):
         "MemoryBudget",
         "DecodeWholeVolume",
         "LargestBuffer",
+        "PixelsPerStraggler",
         "TimeAllowance",
     ):
         assert name in text
