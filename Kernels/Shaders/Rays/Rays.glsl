@@ -288,7 +288,7 @@ uint PixelsInTiles()
 }
 
 // In a tile, each 2^n pixels in order from a multiple of it are a square or two of them: however
-// many lanes run in step, their pixels are neighbours. From the lowest bit on, an order has two bits
+// many lanes run in step, their pixels are neighbours. From the lowest bit on an order has two bits
 // of x, two of y, the third of x and the third of y.
 uvec2 PlaceInTile(uint order)
 {
