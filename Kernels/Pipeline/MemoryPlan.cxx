@@ -21,8 +21,8 @@ constexpr std::int64_t SlotsPerMapPage = 8;
 
 constexpr std::int64_t LargestCopiedCache = 1 << 16; // slots: less costs little to copy
 
-constexpr std::int64_t NewRoom = 4;          // for pixels, for each that the image has
-constexpr std::int64_t MostRoom = 2 * NewRoom; // likewise, before some of it is given back
+constexpr std::int64_t MostRoom = 2;         // for pixels, beside what the image needs
+constexpr std::int64_t LargeShare = 4;       // an image that covers such a part of its viewport
 constexpr double PauseMilliseconds = 2000.0; // no movement has one
 
 std::int64_t LeastSlots(const SceneNeeds& scene)
@@ -188,9 +188,13 @@ SceneNeeds WithPixels(const SceneNeeds& scene, std::int64_t pixels)
 std::int64_t RoomForImage(std::int64_t held, std::int64_t needed, std::int64_t most, double idle)
 {
   std::int64_t room = held;
-  if (needed > held || (held > MostRoom * needed && idle >= PauseMilliseconds))
+  if (needed > held)
   {
-    room = NewRoom * needed;
+    room = LargeShare * needed > most ? most : std::max(needed, MostRoom * held);
+  }
+  else if (LargeShare * needed <= most && held > MostRoom * needed && idle >= PauseMilliseconds)
+  {
+    room = needed;
   }
   return std::min(room, most);
 }

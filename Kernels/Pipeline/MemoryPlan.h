@@ -47,9 +47,10 @@ SceneNeeds WithReservation(const DeviceLimits& limits, const SceneNeeds& scene);
 SceneNeeds WithPixels(const SceneNeeds& scene, std::int64_t pixels);
 
 /// For how many pixels there is to be room in the next image's buffers, which have room for `held`.
-/// The image has `needed`, and at most `most`. In a movement it differs from frame to frame, and new
-/// memory costs a frame many milliseconds: new room is four times as large, and does not shrink
-/// before a pause of so many milliseconds.
+/// The image has `needed`, and at most `most`. In a movement, where it differs from frame to frame,
+/// it doubles at least, and does not shrink before a pause of so many milliseconds. An image that
+/// covers more than a quarter of its viewport has room for all of it: new memory costs a GPU up to
+/// a millisecond a MiB, which is much in a frame, and for a small image little.
 std::int64_t RoomForImage(std::int64_t held, std::int64_t needed, std::int64_t most, double idle);
 
 struct CacheGrowth
