@@ -341,6 +341,12 @@ bool vtkProgressiveIsosurfaceMapper::UpdateScene(vtkRenderer* renderer, vtkVolum
                   "volume's matrix and the camera must be finite, and none of them flat");
     return false;
   }
+  if (HasTooLongWays(scene.View))
+  {
+    vtkErrorMacro("cannot show its input: rays would cross 2^29 voxels and more on their way "
+                  "through it; resample the image to spacings that differ less");
+    return false;
+  }
   if (this->LitLikeMeshes && scene.Look.LitSides == glsl::TWO_SIDED)
   {
     scene.Look.LitSides = glsl::LIT_LIKE_MESHES;

@@ -9,7 +9,7 @@
 
 namespace
 {
-constexpr int MostBits = 26;     // of coordinates before the point: see SpeedOf in Rays.glsl
+constexpr int MostBits = 29;     // of coordinates before the point: see SpeedOf in Rays.glsl
 constexpr double Margin = 1e-6;  // of the depths, for the rounding of what they come from
 constexpr double Farthest = 1e9; // cell, beyond all volumes
 // Of the few numbers of a view, so that nothing is lost where a volume is far away.
@@ -145,6 +145,11 @@ void FixRays(const ViewGeometry& view, const DrawnDepths& depths, glsl::View& bl
   }
 }
 
+bool AreTooLong(const Line& line, const std::int32_t size[2])
+{
+  return line.Way.LargestIn(size) >= std::ldexp(Exact(1), MostBits);
+}
+
 void ToFloat(const PixelVector& vector, glsl::PixelVector& rounded)
 {
   std::copy(vector.Base, vector.Base + 3, rounded.Base);
@@ -189,6 +194,17 @@ double HitDepth(const DrawnDepths& depths, std::uint32_t key)
     return std::numeric_limits<double>::infinity();
   }
   return depths.First + std::ldexp(key + 0.5, -glsl::KEY_BITS) * (depths.Last - depths.First);
+}
+
+bool HasTooLongWays(const ViewGeometry& view)
+{
+  const DrawnDepths depths = FindDrawnDepths(view);
+  bool tooLong = false;
+  for (int axis = 0; axis < 3 && depths.First < depths.Last; ++axis)
+  {
+    tooLong = tooLong || AreTooLong(LineOnAxis(view, depths, axis), view.ViewportSize);
+  }
+  return tooLong;
 }
 
 glsl::View FixView(const ViewGeometry& view)

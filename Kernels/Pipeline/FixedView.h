@@ -19,8 +19,12 @@ DrawnDepths FindDrawnDepths(const ViewGeometry& view);
 /// Finds the depth of the hit that a key of Rays.glsl stands for; infinity for no hit.
 double HitDepth(const DrawnDepths& depths, std::uint32_t key);
 
+/// Whether rays cross 2^29 voxels or more between the first and the last depth: more than FixView
+/// has numbers for. Spacings that differ a million times make them.
+bool HasTooLongWays(const ViewGeometry& view);
+
 /// Translates a view for the GPU. Its origins and ways are off by 2^-31 voxels at most. No ray is
-/// drawn where the image is wider than 2^26 voxels: all of a volume would be less than a pixel.
+/// drawn where the image is wider than 2^29 voxels: all of a volume would be less than a pixel.
 glsl::View FixView(const ViewGeometry& view);
 
 #endif

@@ -138,10 +138,22 @@ TEST(FixedView, DrawsNothingOfWhatIsNotInTheClippingRange)
 TEST(FixedView, DrawsNothingOfAVolumeThatIsMuchLessThanAPixel)
 {
   ViewGeometry view = MakeView();
-  view.RayOrigin.PerX[0] = 1e7;
-  EXPECT_EQ(FixView(view).HasRays, 1);
   view.RayOrigin.PerX[0] = 1e8;
+  EXPECT_EQ(FixView(view).HasRays, 1);
+  view.RayOrigin.PerX[0] = 1e9;
   EXPECT_EQ(FixView(view).HasRays, 0);
+}
+
+TEST(FixedView, TellsWaysThatAreTooLong)
+{
+  ViewGeometry view = MakePerspectiveView();
+  EXPECT_FALSE(HasTooLongWays(view));
+  view.RayOrigin.PerX[0] = 1e9; // far away: a pixel is wider than the volume
+  EXPECT_FALSE(HasTooLongWays(view));
+  view.RayDirection.PerY[1] *= 1e9;
+  EXPECT_TRUE(HasTooLongWays(view));
+  view.FarDistance = 0.0;
+  EXPECT_FALSE(HasTooLongWays(view));
 }
 
 TEST(FixedView, DistancesFromClippingPlanesKeepTheirProportions)
@@ -158,7 +170,7 @@ TEST(FixedView, DistancesFromClippingPlanesKeepTheirProportions)
     const double way = At(block.ClippingWay[1], 1, 0, 0);
     EXPECT_NEAR(-at / way, 0.25, 1e-6);
     EXPECT_LT(at, 0.0);
-    EXPECT_GT(std::abs(at), 1e6); // uses the room that there is
+    EXPECT_GT(std::abs(at), 1e7); // uses the room that there is
     EXPECT_EQ(At(block.ClippingOrigin[0], 0, 0, 0), 0.0);
   }
 }

@@ -73,7 +73,8 @@ def compare(depth: np.ndarray, expected: Cast) -> Agreement:
     off = np.abs(_difference(depth, expected.depth, close))
     error = np.maximum(np.maximum(before, behind), np.maximum(off, 0.0)) * expected.voxels
     rounding = tolerances.DEPTH_RELATIVE * np.where(hit, depth, 0.0) * expected.voxels
-    allowed = tolerances.DEPTH_VOXELS + rounding
+    place = tolerances.PLACE_VOXELS * expected.spacing * expected.voxels
+    allowed = tolerances.DEPTH_VOXELS + rounding + place
     both = hit & np.isfinite(expected.depth)
     same = (hit == np.isfinite(expected.depth)) & (
         np.abs(_difference(depth, expected.depth, both)) * expected.voxels <= allowed

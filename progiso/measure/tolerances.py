@@ -11,6 +11,11 @@ DEPTH_VOXELS = 1e-4
 #: half a unit in its last place.
 DEPTH_RELATIVE = 2.0**-24
 
+#: Error in voxels of the axis with the largest spacing, on top of both: rays are made of places in
+#: steps of 2^-32 voxels, and of some sums and products of them. Where spacings differ a million
+#: times it is a thousandth of a voxel of the smallest one, elsewhere nothing.
+PLACE_VOXELS = 2.0**-29
+
 #: What rounding may do to a sample. Its value may be off by this many units in the last place
 #: (float32) of the largest difference from the isovalue, because the interpolant is a sum of eight
 #: products. Its place may be off by this many voxels: rays are double, but coordinates within a

@@ -167,12 +167,15 @@ class Cast:
         first distance at which the surface is possible and certain, given the slack.
     voxels
         voxels (length in index space) that a ray goes in one world unit.
+    spacing
+        of the axis with the largest one, in world units.
     """
 
     depth: np.ndarray
     early: np.ndarray
     late: np.ndarray
     voxels: np.ndarray
+    spacing: float = 0.0
 
 
 def cast(
@@ -210,9 +213,10 @@ def cast(
     begin, end = clip[0] / across, clip[1] / across
     result = cast_rays(volume, isovalue, origins, directions, slack=slack, begin=begin, end=end)
     shape = (size[1], size[0]) if pixels is None else (-1,)
-    return Cast(
-        *(getattr(result, name).reshape(shape) for name in ("depth", "early", "late", "voxels"))
+    depth, early, late, voxels = (
+        getattr(result, name).reshape(shape) for name in ("depth", "early", "late", "voxels")
     )
+    return Cast(depth, early, late, voxels, result.spacing)
 
 
 def cast_rays(
@@ -240,7 +244,8 @@ def cast_rays(
         hits[:, part] = _cast_chunk(
             grid, starts[part].T, steps[part].T, begin[part], end[part], slack
         )
-    return Cast(hits[1], hits[0], hits[2], np.linalg.norm(steps, axis=1))
+    spacing = float(np.linalg.norm(volume.index_to_world[:3, :3], axis=0).max())
+    return Cast(hits[1], hits[0], hits[2], np.linalg.norm(steps, axis=1), spacing)
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,8 @@ _ABOUT = """\
   none is possible, or a miss where one is certain. In *degrees*: between normals. In *rays*:
   those that slip through a closed surface, or hit one where there is nothing. In *faults*: 1
   where the one clear error that is due does not come.
-- **limit** is what is granted: of depths 10⁻⁴ voxels and the rounding of a float32 distance.
+- **limit** is what is granted: of depths 10⁻⁴ voxels, the rounding of a float32 distance, and 2⁻²⁹
+  voxels of the axis with the largest spacing, in whose steps rays are made.
 - **verdict**: *ok*, *failed*, or *limit* where the limit is the bound of something that cannot be
   done, which the note names.
 - **time** is the least of a few complete images, wall clock, another image having been rendered

@@ -180,6 +180,9 @@ def check_depths(
     rounded = bool(error > tolerances.DEPTH_VOXELS)
     far = np.max(np.where(np.isfinite(depth), depth, 0) * expected.voxels)
     distances = f"; float32 rounds distances of {far:.2g} voxels" if rounded else ""
+    place = float(tolerances.PLACE_VOXELS * expected.spacing * np.max(expected.voxels))
+    if place > tolerances.DEPTH_VOXELS:
+        distances += f", and rays are made in steps of {place:.2g} of them"
     return Outcome(
         error,
         limit,

@@ -81,7 +81,7 @@ struct Speed
 {
   ivec3 Backwards; // -1 where a coordinate falls, else 0
   Wide3 Inverse;   // 2^(126 - Zeros) / the absolute way
-  ivec3 Zeros;     // leading ones of the absolute way: 5 or more
+  ivec3 Zeros;     // leading ones of the absolute way: 2 or more
 };
 
 Speed SpeedOf(Wide3 way)
@@ -96,14 +96,16 @@ Speed SpeedOf(Wide3 way)
   return speed;
 }
 
-// Parameters at which coordinates have changed by so much, FARTHEST at most.
+// Parameters at which coordinates have changed by so much; FARTHEST, before or behind, beyond twice
+// the way.
 Wide3 ReachedAt(Speed speed, Wide3 change)
 {
   ivec3 before = (change.High >> 31) ^ speed.Backwards;
   Wide3 scaled = HighProduct(Negated(change, change.High >> 31), speed.Inverse);
-  ivec3 bits = speed.Zeros - (126 - 64 - WAY_BITS);
+  // in eighths, so that no shift goes to the right
+  ivec3 bits = speed.Zeros - (126 - 64 - WAY_BITS - 3);
   ivec3 far = -ivec3(lessThan(LeadingZeros(scaled) - bits, ivec3(3)));
-  Wide3 t = ShiftLeft(scaled, bits);
+  Wide3 t = Halved(ShiftLeft(scaled, bits), 3);
   return Negated(Choose(t, AllOf(FARTHEST), far), before);
 }
 

@@ -175,6 +175,12 @@ Wide3 Doubled(Wide3 a, int bits)
   return Wide3(a.High << bits | ivec3(a.Low >> (32 - bits)), a.Low << bits);
 }
 
+// Over 2^bits, by 1 to 31 bits, of numbers that are not negative.
+Wide3 Halved(Wide3 a, int bits)
+{
+  return Wide3(a.High >> bits, a.Low >> bits | uvec3(a.High) << (32 - bits));
+}
+
 // Of numbers without a sign, by 0 to 63 bits.
 Wide3 ShiftRight(Wide3 a, ivec3 bits)
 {
