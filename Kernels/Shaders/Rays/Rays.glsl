@@ -46,12 +46,17 @@ Wide3 PlanesT(Ray ray, ivec3 index)
   return Sum(ray.First, Negated(Product(ray.Spacing, uvec3(index)), IsBackwards(ray)));
 }
 
-// Where in the viewport a pixel is: those of the image are numbered in rows from the bottom left.
-// The rays are the viewport's, so that they are the same to the bit whatever part of it has rays.
-uvec2 PixelPlace(uint pixel)
+// Pixels of the image are numbered in rows from the bottom left.
+uvec2 PlaceInImage(uint pixel)
 {
   uint width = uint(view.ImageSize.x);
-  return uvec2(view.FirstPixel) + uvec2(pixel % width, pixel / width);
+  return uvec2(pixel % width, pixel / width);
+}
+
+// The rays are the viewport's, so that they are the same to the bit whatever part of it has rays.
+uvec2 PlaceInViewport(uint pixel)
+{
+  return uvec2(view.FirstPixel) + PlaceInImage(pixel);
 }
 
 // So many times what is gained for each half pixel.
@@ -72,7 +77,7 @@ Wide3 AtPixel(FixedPixelVector vector, uvec2 place)
 
 RayLine LineOf(uint pixel)
 {
-  uvec2 place = PixelPlace(pixel);
+  uvec2 place = PlaceInViewport(pixel);
   return RayLine(AtPixel(view.RayOrigin, place), AtPixel(view.RayWay, place));
 }
 
@@ -142,7 +147,7 @@ vec3 PlaceInCell(Wide3 place, ivec3 cell)
 #ifdef CLIPPED
 void ClipRay(inout Ray ray, uint pixel)
 {
-  uvec2 place = PixelPlace(pixel);
+  uvec2 place = PlaceInViewport(pixel);
   for (int i = 0; 3 * i < view.NumberOfClippingPlanes; ++i)
   {
     Wide3 distance = AtPixel(view.ClippingOrigin[i], place);
@@ -259,7 +264,7 @@ bool Misses(Ray ray)
 // The same ray in view coordinates, where the surface is lit.
 vec2 PixelCentre(uint pixel)
 {
-  return vec2(PixelPlace(pixel)) + 0.5;
+  return vec2(PlaceInViewport(pixel)) + 0.5;
 }
 
 vec3 EyeRayOrigin(uint pixel)
@@ -315,7 +320,7 @@ uint PixelInTileOrder(uint order)
 
 uint TileOrderOf(uint pixel)
 {
-  uvec2 place = PixelPlace(pixel);
+  uvec2 place = PlaceInImage(pixel);
   uvec2 tile = place / TILE_SIDE;
   return PIXELS_PER_TILE * (tile.y * Tiles(view.ImageSize.x) + tile.x) +
     OrderInTile(place % TILE_SIDE);

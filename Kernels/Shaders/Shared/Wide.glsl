@@ -18,11 +18,6 @@ Wide3 AllOf(Wide a)
   return Wide3(ivec3(a.High), uvec3(a.Low));
 }
 
-Wide XOf(Wide3 a)
-{
-  return Wide(a.High.x, a.Low.x);
-}
-
 Wide Sum(Wide a, Wide b)
 {
   uint carry;
@@ -63,11 +58,6 @@ Wide3 Product(Wide3 a, uvec3 b)
 bool IsLess(Wide a, Wide b)
 {
   return Difference(a, b).High < 0;
-}
-
-bool IsEqual(Wide a, Wide b)
-{
-  return a.High == b.High && a.Low == b.Low;
 }
 
 bvec3 AreEqual(Wide3 a, Wide b)

@@ -12,7 +12,7 @@ import progiso
 from helpers.comparison import NESTED, OPAQUE, ComparisonScene, picture_of
 from helpers.geometry import ball
 from helpers.gl_hooks import STORAGE_BUFFER, intercepted
-from helpers.images import blobs, make_image, marschner_lobb
+from helpers.images import blobs, make_image, marschner_lobb, noise
 from helpers.messages import vtk_messages
 from helpers.scenes import CACHED, Scene, check_scene, least_budget
 from progiso.oracle.caster import Camera
@@ -68,6 +68,25 @@ def test_the_rectangle_is_the_volumes(image):
     # the nearest side is 24 wide and 100 away; a pixel is 2 * tan(30°) / 120 of the distance
     side = 24 / 100 * HEIGHT / (2 * np.tan(np.radians(30)))
     assert np.floor(side) ** 2 < pixels(scene) <= (side + 3) ** 2
+
+
+def test_the_smallest_cache_serves_a_rectangle_beside_the_corner():
+    """Where there is no room for all rays, those of a window of pixels are cast.
+
+    They are in the order of the rectangle's tiles, wherever in the viewport it begins.
+    """
+    image = progiso.compress(make_image(noise((120, 120, 120))), rate=8)
+    aside = np.array(image.GetCenter()) + (-90, -60, 0)
+    eye = Camera(tuple(aside + (0, 0, 260)), tuple(aside))
+    scene = Scene(image, 3.0, eye, SIZE)
+    expected = scene.depth()
+    rows, columns = np.nonzero(np.isfinite(expected))
+    assert columns.min() > 80 and rows.max() < 80
+    least = least_budget(image, 3.0, eye, SIZE)
+    scene = Scene(image, 3.0, eye, SIZE, MemoryBudget=least, **CACHED)
+    assert scene.depth().tobytes() == expected.tobytes()
+    active = [p["active_rays"] for p in scene.statistics()["passes"]]
+    assert 0 < active[3] < active[2] / 2  # two passes were refused blocks
 
 
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
