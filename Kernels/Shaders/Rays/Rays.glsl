@@ -86,7 +86,7 @@ struct Speed
 {
   ivec3 Backwards; // -1 where a coordinate falls, else 0
   Wide3 Inverse;   // 2^(126 - Zeros) / the absolute way
-  ivec3 Zeros;     // leading ones of the absolute way: 2 or more
+  ivec3 Zeros;     // leading zero bits of the absolute way, 2 or more
 };
 
 Speed SpeedOf(Wide3 way)

@@ -149,7 +149,7 @@ ivec3 LeadingZeros(Wide3 a)
   return Choose(inHigh, 63 - findMSB(a.Low), -ivec3(equal(a.High, ivec3(0))));
 }
 
-// By 0 to 63 bits.
+// Times 2^bits, for 0 to 63 bits.
 Wide3 ShiftLeft(Wide3 a, ivec3 bits)
 {
   Wide3 byWord = Wide3(ivec3(a.Low), uvec3(0u));
@@ -159,13 +159,13 @@ Wide3 ShiftLeft(Wide3 a, ivec3 bits)
   return Wide3(ivec3(high), part.Low << rest);
 }
 
-// Times 2^bits, by 1 to 31 bits.
+// Times 2^bits, for 1 to 31 bits.
 Wide3 Doubled(Wide3 a, int bits)
 {
   return Wide3(a.High << bits | ivec3(a.Low >> (32 - bits)), a.Low << bits);
 }
 
-// Over 2^bits, by 1 to 31 bits, of numbers that are not negative.
+// Divided by 2^bits, for 1 to 31 bits, of numbers that are not negative.
 Wide3 Halved(Wide3 a, int bits)
 {
   return Wide3(a.High >> bits, a.Low >> bits | uvec3(a.High) << (32 - bits));
