@@ -15,6 +15,11 @@ constexpr double Farthest = 1e9; // cell, beyond all volumes
 // Of the few numbers of a view, so that nothing is lost where a volume is far away.
 using Exact = long double;
 
+bool Fits(Exact coordinate)
+{
+  return coordinate < std::ldexp(Exact(1), MostBits);
+}
+
 // A number that is Base + x PerX + y PerY at a pixel.
 struct PixelNumber
 {
@@ -123,7 +128,7 @@ void FixRays(const ViewGeometry& view, const DrawnDepths& depths, glsl::View& bl
   for (int axis = 0; axis < 3; ++axis)
   {
     axes[axis] = LineOnAxis(view, depths, axis);
-    fits = fits && axes[axis].LargestIn(view.ViewportSize) < std::ldexp(Exact(1), MostBits);
+    fits = fits && Fits(axes[axis].LargestIn(view.ViewportSize));
   }
   if (!fits)
   {
@@ -143,11 +148,6 @@ void FixRays(const ViewGeometry& view, const DrawnDepths& depths, glsl::View& bl
     Store(line.Origin, i % 3, block.ClippingOrigin[i / 3]);
     Store(line.Way, i % 3, block.ClippingWay[i / 3]);
   }
-}
-
-bool AreTooLong(const Line& line, const std::int32_t size[2])
-{
-  return line.Way.LargestIn(size) >= std::ldexp(Exact(1), MostBits);
 }
 
 void ToFloat(const PixelVector& vector, glsl::PixelVector& rounded)
@@ -202,7 +202,7 @@ bool HasTooLongWays(const ViewGeometry& view)
   bool tooLong = false;
   for (int axis = 0; axis < 3 && depths.First < depths.Last; ++axis)
   {
-    tooLong = tooLong || AreTooLong(LineOnAxis(view, depths, axis), view.ViewportSize);
+    tooLong = tooLong || !Fits(LineOnAxis(view, depths, axis).Way.LargestIn(view.ViewportSize));
   }
   return tooLong;
 }

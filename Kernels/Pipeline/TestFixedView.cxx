@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Pipeline/FixedView.h"
 
+#include "Pipeline/TestViews.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,17 +15,7 @@ namespace
 // Parallel rays along -z through the pixels of 4 x 2, from z = 10 on; a volume from z = 2 to 6.
 ViewGeometry MakeView()
 {
-  ViewGeometry view = {};
-  view.ViewportSize[0] = 4;
-  view.ViewportSize[1] = 2;
-  view.RayOrigin.Base[2] = 10.0;
-  view.RayOrigin.PerX[0] = 1.0;
-  view.RayOrigin.PerY[1] = 1.0;
-  view.RayDirection.Base[2] = -1.0;
-  view.Depth[2] = -1.0;
-  view.Depth[3] = 10.0;
-  view.NearDistance = 1.0;
-  view.FarDistance = 100.0;
+  ViewGeometry view = MakeParallelView(4, 2);
   view.FirstDrawn[2] = 2;
   view.LastDrawn[0] = 4;
   view.LastDrawn[1] = 2;

@@ -3,6 +3,7 @@
 #include "Pipeline/ImageRectangle.h"
 
 #include "Pipeline/FixedView.h"
+#include "Pipeline/TestViews.h"
 
 #include <gtest/gtest.h>
 
@@ -19,17 +20,7 @@ constexpr int Width = 100, Height = 80;
 // Parallel rays along -z, a pixel for each voxel, through the box from (20, 30, 2) to (40, 50, 6).
 ViewGeometry ParallelView()
 {
-  ViewGeometry view = {};
-  view.ViewportSize[0] = Width;
-  view.ViewportSize[1] = Height;
-  view.RayOrigin.Base[2] = 10.0;
-  view.RayOrigin.PerX[0] = 1.0;
-  view.RayOrigin.PerY[1] = 1.0;
-  view.RayDirection.Base[2] = -1.0;
-  view.Depth[2] = -1.0;
-  view.Depth[3] = 10.0;
-  view.NearDistance = 1.0;
-  view.FarDistance = 100.0;
+  ViewGeometry view = MakeParallelView(Width, Height);
   const int first[] = { 20, 30, 2 }, last[] = { 40, 50, 6 };
   std::copy(first, first + 3, view.FirstDrawn);
   std::copy(last, last + 3, view.LastDrawn);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Scene/HitGeometry.h"
 
+#include "Pipeline/TestViews.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,20 +15,9 @@ namespace
 // Parallel rays along -z through the pixels of 4 x 2, from z = 10 on; a volume from z = 2 to 6.
 ViewGeometry MakeView()
 {
-  ViewGeometry view = {};
-  view.ViewportSize[0] = view.ImageSize[0] = 4;
-  view.ViewportSize[1] = view.ImageSize[1] = 2;
-  for (PixelVector* origin : { &view.RayOrigin, &view.EyeOrigin })
-  {
-    origin->Base[2] = 10.0;
-    origin->PerX[0] = 1.0;
-    origin->PerY[1] = 1.0;
-  }
-  view.RayDirection.Base[2] = view.EyeDirection.Base[2] = -1.0;
-  view.Depth[2] = -1.0;
-  view.Depth[3] = 10.0;
-  view.NearDistance = 1.0;
-  view.FarDistance = 100.0;
+  ViewGeometry view = MakeParallelView(4, 2);
+  view.ImageSize[0] = 4;
+  view.ImageSize[1] = 2;
   view.FirstDrawn[2] = 2;
   view.LastDrawn[0] = 4;
   view.LastDrawn[1] = 2;
