@@ -28,10 +28,25 @@ VTK_READERS = {
 def read_with(reader: Any, path: Path, progress: Progress | None = None) -> vtkDataObject:
     """Run a VTK reader on a file."""
     observe_progress(reader, progress)
-    with vtk_errors(f"cannot read '{path}'"):
-        reader.SetFileName(str(path))
-        reader.Update()
+    try:
+        with vtk_errors(f"cannot read '{path}'"):
+            reader.SetFileName(str(path))
+            reader.Update()
+    except RuntimeError as error:
+        if "not well-formed" in str(error) and _has_raw_appended_data(path):
+            raise RuntimeError(
+                f"cannot read '{path}': its data are appended raw, which VTK before 9.3.1 cannot "
+                "read with a libexpat of 2024 or later; preload libEagerExpat.so (README, "
+                "ParaView), or save the file without appended data"
+            ) from None
+        raise
     return reader.GetOutputDataObject(0)
+
+
+def _has_raw_appended_data(path: Path) -> bool:
+    """Tell whether a file's XML ends where raw bytes begin."""
+    with open(path, "rb") as file:
+        return b'<AppendedData encoding="raw"' in file.read(2**20)
 
 
 def write_with(writer: Any, path: Path) -> None:

@@ -17,6 +17,7 @@ from helpers.images import (
     stream_of,
 )
 from helpers.messages import vtk_messages
+from helpers.programs import run_progiso
 from progiso import vtkCompressedVolume, vtkZFPReader, vtkZFPWriter
 from progiso.oracle import zfp_reference
 
@@ -111,6 +112,14 @@ def test_vti_with_appended_data(tmp_path):
     ).stat().st_size
     with pytest.raises(ValueError, match="appended"):
         progiso.save(compressed, tmp_path / "volume.zfp", appended=True)
+
+
+def test_appended_data_that_vtk_cannot_read(tmp_path, monkeypatch):
+    """Where VTK's XML reader and libexpat do not go together, the message names the remedy."""
+    progiso.save(make_image(noise((4, 4, 4))), tmp_path / "appended.vti", appended=True)
+    monkeypatch.delenv("LD_PRELOAD", raising=False)
+    done = run_progiso(tmp_path, "info", "appended.vti")
+    assert done.returncode == 0 or "preload libEagerExpat.so" in done.stderr
 
 
 def test_reader_refuses_what_is_no_zfp_file(tmp_path):

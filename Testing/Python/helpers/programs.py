@@ -2,6 +2,7 @@
 
 import itertools
 import os
+import pathlib
 import shutil
 import subprocess
 import sys
@@ -58,6 +59,9 @@ def under_x(*command, python_path=(), timeout=600, cwd=None, **variables):
     }
     environment["PYTHONPATH"] = os.pathsep.join(map(str, python_path))
     environment["PROGISO_GL_DEBUG"] = "1"
+    build = pathlib.Path(os.environ.get("PROGISO_PARAVIEW_BUILD", "."))
+    for library in build.resolve().glob("lib*/libEagerExpat.so"):  # as README tells users to
+        environment["LD_PRELOAD"] = str(library)
     environment.update(variables)
     # -noreset: the server must not restart, and refuse a connection meanwhile, when its only client
     # closes one to open the next
