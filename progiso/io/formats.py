@@ -1,0 +1,126 @@
+"""The table of formats: which module reads a file, and what it needs installed."""
+
+from __future__ import annotations
+
+import importlib
+import os
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+from .._typing import FilePath
+from .errors import header_warnings, reading
+from .source import Selection, Source
+
+
+class Format(NamedTuple):
+    """Where a format's reader is.
+
+    Attributes
+    ----------
+    module : str
+        Module of this package with a function ``open_NAME(path, selection) -> Source``.
+    opener : str
+        That function's name.
+    extra : str or None
+        Optional dependencies of the package (``pip install progiso[extra]``) that it needs.
+    title : str
+        For lists and messages.
+    """
+
+    module: str
+    opener: str
+    title: str
+    extra: str | None = None
+
+
+_VTK = Format("vtk_files", "open_vtk", "VTK")
+_ZFP = Format("zfp", "open_zfp", "zfp")
+_RAW = Format("raw", "open_raw", "raw samples")
+
+#: Formats by suffix, in lower case; the longest that fits is taken.
+FORMATS: dict[str, Format] = {
+    ".vti": _VTK,
+    ".pvti": _VTK,
+    ".vtk": _VTK,
+    ".zfp": _ZFP,
+    ".raw": _RAW,
+}
+
+#: What reads a folder that has none of the suffixes above.
+FOLDER = Format("folders", "open_folder", "folders of DICOM files or numbered slices")
+
+
+def open_source(path: FilePath, selection: Selection | None = None) -> Source:
+    """Open a volume in a file or folder: read its header, and no samples.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        A file or folder of a known format. ``file.h5:/group/array`` names an array inside a file.
+    selection : Selection, optional
+        What of it is wanted, where it holds more than one volume.
+
+    Raises
+    ------
+    FileNotFoundError
+        When there is no such file.
+    ValueError, RuntimeError
+        When it is damaged, of an unknown kind, or no volume; the message names it.
+    ImportError
+        When the format needs a package that is not installed; the message names the extra.
+    """
+    file, selection = _split(path, selection or Selection())
+    if not file.exists():
+        raise FileNotFoundError(f"there is no file '{file}'")
+    found = format_of(file)
+    if found is None:
+        raise ValueError(f"do not know how to read '{file}' (known: {', '.join(FORMATS)})")
+    opener = opener_of(found, file)
+    with reading(file), header_warnings(file):
+        return opener(file, selection)
+
+
+def opener_of(kind: Format, path: Path) -> Callable[[Path, Selection], Source]:
+    """Import a format's reader, or raise `ImportError` that names what is missing."""
+    try:
+        module = importlib.import_module(f".{kind.module}", __package__)
+        opener: Callable[[Path, Selection], Source] = getattr(module, kind.opener)
+    except ImportError as error:
+        if kind.extra is None or (error.name or "").startswith(__package__.split(".")[0]):
+            raise
+        raise ImportError(
+            f"reading '{path}' needs {error.name}: pip install 'progiso[{kind.extra}]'"
+        ) from None
+    return opener
+
+
+def format_of(path: Path) -> Format | None:
+    """Return the format of a file or folder by its name, or None where it is unknown."""
+    suffix = suffix_of(path)
+    if suffix in FORMATS:
+        return FORMATS[suffix]
+    return FOLDER if path.is_dir() else None
+
+
+def suffix_of(path: FilePath) -> str:
+    """Return the longest known suffix of a path, else its last one, in lower case.
+
+    Examples
+    --------
+    >>> suffix_of("brain.NII.gz"), suffix_of("x.unknown")
+    ('.nii.gz', '.unknown')
+    """
+    name = Path(path).name.lower()
+    known = [suffix for suffix in FORMATS if name.endswith(suffix)]
+    return max(known, key=len, default=Path(name).suffix)
+
+
+def _split(path: FilePath, selection: Selection) -> tuple[Path, Selection]:
+    """Split ``file.h5:/group/array`` into the file and the array."""
+    text = os.fspath(path)
+    file, colon, inner = text.partition(":/")
+    if colon and not os.path.exists(text) and os.path.exists(file):
+        return Path(file), replace(selection, array=inner)
+    return Path(text), selection
