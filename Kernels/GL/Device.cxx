@@ -21,6 +21,13 @@ void SetSegment(GLuint program, const glsl::Segment& segment)
   }
 }
 
+// Sets the uniform of BlockBox.glsl.
+void SetBox(GLuint program, const glsl::BlockBox& box)
+{
+  glUniform3iv(glGetUniformLocation(program, "box.First"), 1, box.First);
+  glUniform3iv(glGetUniformLocation(program, "box.Size"), 1, box.Size);
+}
+
 // See FoldedGroup in Scene.glsl.
 void DispatchFolded(std::int64_t groups)
 {
@@ -167,8 +174,9 @@ void Device::Dispatch(Stage stage, std::int64_t groups)
   this->Run(stage, {}, [=](GLuint) { DispatchFolded(groups); });
 }
 
-void Device::DispatchSlice(
-  Stage stage, std::int64_t groups, const VolumeSlice& slice, const BoundSegment* segment)
+// The box goes after it: a pass that runs the same program has none.
+void Device::DispatchSlice(Stage stage, std::int64_t groups, const VolumeSlice& slice,
+  const glsl::BlockBox& box, const BoundSegment* segment)
 {
   std::vector<BoundSegment> segments;
   if (segment)
@@ -180,9 +188,10 @@ void Device::DispatchSlice(
     {
       glUniform2ui(glGetUniformLocation(program, "slice"), static_cast<GLuint>(slice.First),
         static_cast<GLuint>(slice.End));
+      SetBox(program, box);
       DispatchFolded(groups);
+      SetBox(program, {});
     });
-  glFinish();
 }
 
 void Device::DispatchIndirect(

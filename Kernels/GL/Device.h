@@ -12,19 +12,13 @@
 #include "GL/StageTimer.h"
 #include "GL/StorageBuffers.h"
 #include "GL/UniformBuffers.h"
+#include "GL/VolumeSlice.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
-
-/// Macrocells or blocks: see VolumeSlice.glsl.
-struct VolumeSlice
-{
-  std::int64_t First = 0;
-  std::int64_t End = 0; ///< behind the last
-};
 
 /// A part of a compressed stream as a stage sees it, and the macrocells whose blocks it holds.
 struct BoundSegment
@@ -86,10 +80,13 @@ public:
   void DispatchIndirect(
     Stage stage, std::size_t controlOffset, const std::vector<BoundSegment>& segments = {});
   ///@}
-  /// Runs a stage with so many work groups on a part of a whole volume, of which a segment of the
-  /// stream holds the blocks (null: the stage reads no stream), and waits until it is done.
-  void DispatchSlice(
-    Stage stage, std::int64_t groups, const VolumeSlice& slice, const BoundSegment* segment);
+  /// Runs a stage with so many work groups on a part of a whole volume: macrocells, blocks or a
+  /// box of decoded blocks, as the stage takes them. A segment of the stream holds the blocks
+  /// (null: the stage reads no stream).
+  void DispatchSlice(Stage stage, std::int64_t groups, const VolumeSlice& slice,
+    const glsl::BlockBox& box, const BoundSegment* segment);
+  /// Waits until the GPU has done all that it was given.
+  static void Finish() { glFinish(); }
   /// Draws the viewport with a stage, and leaves no binding behind.
   void Draw(Stage stage, const SelectedId* selected = nullptr);
 

@@ -4,6 +4,7 @@
 
 #include "GL/DepthCapture.h"
 #include "Pipeline/FixedView.h"
+#include "Pipeline/MacrocellBox.h"
 
 #include <algorithm>
 #include <chrono>
@@ -155,63 +156,100 @@ const Status& ProgressivePipeline::PrepareVolume()
     }
   }
   this->Gpu->Timer.BeginPreparation();
-  if (!this->Needs.Cached)
+  if (this->Needs.Cached)
+  {
+    this->FindRangesByBoxes();
+  }
+  else
   {
     this->DecodeWholeVolume();
+    this->FindRangesOfDecoded();
   }
-  this->RunOnVolume(Stage::BlockRanges);
   this->Gpu->Timer.EndPreparation();
   this->VolumePrepared = this->GetStatus().IsOk();
   return this->GetStatus();
 }
 
+// Does work on a volume's macrocells or blocks by slices, of which none takes the GPU long.
+void ProgressivePipeline::RunSlices(const VolumeSlice& all, SliceSize& size,
+  const std::function<VolumeSlice(const VolumeSlice&)>& run)
+{
+  for (VolumeSlice rest = all; rest.First < rest.End && this->GetStatus();)
+  {
+    const Stopwatch stopwatch;
+    const VolumeSlice done = run(rest);
+    Device::Finish();
+    size.Record(done.GetItems(), stopwatch.GetMilliseconds());
+    rest.First = done.End;
+  }
+}
+
+// Decodes all blocks, an invocation each, then frees the streams.
 void ProgressivePipeline::DecodeWholeVolume()
 {
   for (const Stage stage : { Stage::DecodeBlocks, Stage::DecodeColors })
   {
-    if (InfoOf(stage).IsNeeded(Moment::Volume, this->Needs))
+    if (!InfoOf(stage).IsNeeded(Moment::Volume, this->Needs))
     {
-      this->RunOnVolume(stage);
+      continue;
+    }
+    SliceSize size(FirstSlice * glsl::BLOCKS_PER_MACROCELL);
+    for (const BoundSegment& segment : this->Streams.GetSegments(stage))
+    {
+      const std::int64_t first = segment.Place.FirstBlock;
+      this->RunSlices({ first, first + segment.Place.Blocks }, size,
+        [&](const VolumeSlice& rest)
+        {
+          const VolumeSlice slice = { rest.First, std::min(rest.First + size.Get(), rest.End) };
+          this->Gpu->DispatchSlice(stage, GroupsFor(stage, slice.GetItems()), slice, {}, &segment);
+          return slice;
+        });
     }
   }
   this->Streams.Free();
 }
 
-// Runs a stage on the macrocells of the volume, a work group each, or on its blocks, an invocation
-// each: by slices, those of a segment of the stream after those of another.
-void ProgressivePipeline::RunOnVolume(Stage stage)
+void ProgressivePipeline::FindRangesOfDecoded()
 {
-  const bool macrocells = stage == Stage::BlockRanges;
-  SliceSize size(macrocells ? FirstSlice : FirstSlice * glsl::BLOCKS_PER_MACROCELL);
-  const std::vector<BoundSegment>& segments = this->Streams.GetSegments(stage);
-  if (segments.empty())
+  SliceSize size(FirstSlice);
+  const glsl::BlockBox whole = WholeBox(this->Size).Blocks;
+  this->RunSlices({ 0, this->Needs.Macrocells }, size,
+    [&](const VolumeSlice& rest)
+    {
+      const VolumeSlice slice = { rest.First, std::min(rest.First + size.Get(), rest.End) };
+      this->Gpu->DispatchSlice(Stage::BlockRanges, slice.GetItems(), slice, whole, nullptr);
+      return slice;
+    });
+}
+
+// Decodes boxes of blocks, one after the other, into the cache, which is empty yet: its first slots
+// have them until their macrocells' ranges are found. So one program decodes for ranges and rays.
+void ProgressivePipeline::FindRangesByBoxes()
+{
+  SliceSize size(FirstSlice);
+  for (const BoundSegment& segment : this->Streams.GetSegments(Stage::DecodeBlocks))
   {
-    this->RunSlices(
-      stage, { 0, macrocells ? this->Needs.Macrocells : this->Needs.Blocks }, nullptr, size);
-  }
-  for (const BoundSegment& segment : segments)
-  {
-    const std::int64_t firstBlock = segment.Place.FirstBlock;
-    const VolumeSlice blocks = { firstBlock, firstBlock + segment.Place.Blocks };
-    this->RunSlices(stage, macrocells ? segment.Macrocells : blocks, &segment, size);
+    this->RunSlices(segment.Macrocells, size,
+      [&](const VolumeSlice& rest)
+      {
+        const std::int64_t items = MacrocellsAtATime(this->Size, rest, size.Get());
+        const VolumeSlice slice = { rest.First, rest.First + items };
+        this->FindRangesOf(slice, segment);
+        return slice;
+      });
   }
 }
 
-void ProgressivePipeline::RunSlices(
-  Stage stage, const VolumeSlice& all, const BoundSegment* segment, SliceSize& size)
+void ProgressivePipeline::FindRangesOf(const VolumeSlice& macrocells, const BoundSegment& segment)
 {
-  for (std::int64_t first = all.First; first < all.End && this->GetStatus();)
+  for (VolumeSlice rest = macrocells; rest.First < rest.End;)
   {
-    const VolumeSlice slice = { first, std::min(first + size.Get(), all.End) };
-    const std::int64_t items = slice.End - slice.First;
-    const std::int64_t groups = stage == Stage::BlockRanges ? items : GroupsFor(stage, items);
-    const Stopwatch stopwatch;
-    this->Gpu->DispatchSlice(stage, groups, slice, segment);
-    if (items == size.Get()) // the last one may be small, and its time say little
-    {
-      size.Record(stopwatch.GetMilliseconds());
-    }
-    first = slice.End;
+    const MacrocellBox box = FirstBox(this->Size, rest, this->Needs.Slots);
+    this->Gpu->DispatchSlice(Stage::DecodeBlocks,
+      GroupsFor(Stage::DecodeBlocks, box.GetNumberOfBlocks()), {}, box.Blocks, &segment);
+    this->Gpu->DispatchSlice(
+      Stage::BlockRanges, box.Macrocells.GetItems(), box.Macrocells, box.Blocks, nullptr);
+    rest.First = box.Macrocells.End;
   }
 }
 

@@ -125,9 +125,12 @@ private:
   void FreeForPlan(bool reload);
   Status LoadVolume();
   Status UploadVolume();
+  void RunSlices(const VolumeSlice& all, SliceSize& size,
+    const std::function<VolumeSlice(const VolumeSlice&)>& run);
   void DecodeWholeVolume();
-  void RunOnVolume(Stage stage);
-  void RunSlices(Stage stage, const VolumeSlice& all, const BoundSegment* segment, SliceSize& size);
+  void FindRangesOfDecoded();
+  void FindRangesByBoxes();
+  void FindRangesOf(const VolumeSlice& macrocells, const BoundSegment& segment);
   Status MakeCache(bool newImage);
   void RemakeCache(std::int64_t slots);
   void GrowCache(std::int64_t slots, bool ahead);

@@ -11,10 +11,14 @@ constexpr double MaximumShrinkage = 4.0;
 constexpr double MaximumItems = 1LL << 30;
 }
 
-void SliceSize::Record(double milliseconds)
+void SliceSize::Record(std::int64_t items, double milliseconds)
 {
+  if (2 * items <= this->Items)
+  {
+    return;
+  }
   const double factor =
     std::clamp(Milliseconds / std::max(milliseconds, 1e-3), 1.0 / MaximumShrinkage, MaximumGrowth);
-  const double items = static_cast<double>(this->Items) * factor;
-  this->Items = static_cast<std::int64_t>(std::clamp(items, 1.0, MaximumItems));
+  this->Items =
+    static_cast<std::int64_t>(std::clamp(static_cast<double>(items) * factor, 1.0, MaximumItems));
 }

@@ -20,8 +20,8 @@ public:
   }
 
   std::int64_t Get() const { return this->Items; }
-  /// Records how long a slice of this size took.
-  void Record(double milliseconds);
+  /// Records how long so many items took. Much less than a slice says little.
+  void Record(std::int64_t items, double milliseconds);
 
 private:
   std::int64_t Items;

@@ -18,7 +18,7 @@ double LongestSlice(std::int64_t items, double itemsPerMillisecond)
     const double milliseconds = static_cast<double>(size.Get()) / itemsPerMillisecond;
     longest = std::max(longest, milliseconds);
     done += size.Get();
-    size.Record(milliseconds);
+    size.Record(size.Get(), milliseconds);
   }
   return longest;
 }
@@ -32,24 +32,33 @@ TEST(SliceSize, BeginsAsItIsTold)
 TEST(SliceSize, GrowsAndShrinksFourfoldAtMost)
 {
   SliceSize size(256);
-  size.Record(0.0);
+  size.Record(size.Get(), 0.0);
   EXPECT_EQ(size.Get(), 1024);
-  size.Record(12.5);
+  size.Record(size.Get(), 12.5);
   EXPECT_EQ(size.Get(), 2048);
-  size.Record(50.0);
+  size.Record(size.Get(), 50.0);
   EXPECT_EQ(size.Get(), 1024);
-  size.Record(5000.0);
+  size.Record(size.Get(), 5000.0);
   EXPECT_EQ(size.Get(), 256);
+}
+
+TEST(SliceSize, LearnsFromSlicesThatAreNearlyWhole)
+{
+  SliceSize size(256);
+  size.Record(128, 1.0);
+  EXPECT_EQ(size.Get(), 256);
+  size.Record(243, 12.5);
+  EXPECT_EQ(size.Get(), 486);
 }
 
 TEST(SliceSize, IsNeverEmptyAndNeverEndless)
 {
   SliceSize size(1);
-  size.Record(1e9);
+  size.Record(size.Get(), 1e9);
   EXPECT_EQ(size.Get(), 1);
   for (int slice = 0; slice < 50; ++slice)
   {
-    size.Record(0.0);
+    size.Record(size.Get(), 0.0);
   }
   EXPECT_EQ(size.Get(), 1LL << 30);
 }

@@ -22,6 +22,7 @@ using uvec3 = std::uint32_t[3];
 #define INSTANCE(name)
 #include "Shaders/Light/Palette.glsl.h"
 #include "Shaders/Shared/SceneBlocks.glsl.h"
+#include "Shaders/Store/Box.glsl.h"
 #include "Shaders/Store/Segment.glsl.h"
 
 #define STORAGE_BLOCK(name, declaration) struct name

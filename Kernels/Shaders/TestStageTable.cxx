@@ -198,14 +198,19 @@ TEST(StageTable, EveryProgramIsAskedForOnce)
   }
 }
 
-// Ranges come from the stream where there is a cache, else from the decoded volume.
-TEST(StageTable, RangesComeFromOnePlace)
+// Two programs that decode would take a driver twice as long to compile.
+TEST(StageTable, OneStageDecodesTheVolume)
 {
-  const StageInfo& ranges = InfoOf(Stage::BlockRanges);
-  EXPECT_EQ(ranges.BuffersOf(SmallScene(true)),
-    (std::vector<Buffer>{ Buffer::Macrocells, Buffer::Stream }));
-  EXPECT_EQ(ranges.BuffersOf(SmallScene(false)),
-    (std::vector<Buffer>{ Buffer::Macrocells, Buffer::CacheValues }));
+  for (const SceneNeeds& needs : Scenes())
+  {
+    for (const StageInfo& stage : PipelineStages())
+    {
+      const std::vector<Buffer> bound = stage.BuffersOf(needs);
+      const bool decodes = std::count(bound.begin(), bound.end(), Buffer::Stream) > 0;
+      EXPECT_EQ(decodes, stage.Id == Stage::DecodeBlocks) << stage.Name;
+    }
+    EXPECT_TRUE(InfoOf(Stage::DecodeBlocks).IsNeeded(Moment::Volume, needs));
+  }
 }
 
 // Clicks that change how a scene looks do not compile the decoder again.

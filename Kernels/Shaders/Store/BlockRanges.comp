@@ -1,10 +1,10 @@
-// Builds the macrocell grid, once for a volume. A work group takes the blocks of a macrocell and
-// their neighbours, because a block's cells need 5^3 samples (its dual grid). It decodes them
-// unless the whole volume has been decoded, and stores the range of values of each block's cells in
-// 8 + 8 bits: steps within the macrocell's exact range, rounded outwards. Samples of hidden cells
-// do not count.
+// Builds the macrocell grid, once for a volume, from decoded blocks: a box of them, which is all of
+// the volume where it is decoded whole. A work group takes the blocks of a macrocell and their
+// neighbours, because a block's cells need 5^3 samples (its dual grid). It stores the range of
+// values of each block's cells in 8 + 8 bits: steps within the macrocell's exact range, rounded
+// outwards. Samples of hidden cells do not count.
 
-// NVIDIA's compiler takes 2 s where it unrolls the loops around the decoder.
+// Its loops are too short to be worth the seconds that NVIDIA's compiler takes to unroll them.
 #pragma optionNV(unroll none)
 
 #define CACHE_BY_ROWS
@@ -12,10 +12,7 @@
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
 #include "Shared/Grid.glsl"
-#ifdef BUFFER_STREAM
-#include "Store/BlockStore.glsl"
-#include "Store/ZFPDecode.glsl"
-#endif
+#include "Store/BlockBox.glsl"
 #include "Store/HiddenCells.glsl"
 #include "Store/VolumeSlice.glsl"
 
@@ -43,32 +40,22 @@ void StoreRow(ivec3 local, int row, uvec4 bits)
   }
 }
 
-void LoadBlock(ivec3 local, uint block)
-{
-#ifdef BUFFER_STREAM
-  DecodedBlock decoded = DecodeBlock(block, gl_LocalInvocationIndex);
-#define STORE_ROW(r) StoreRow(local, r, decoded.Row[r]);
-  FOR_ROWS(STORE_ROW)
-#else
-  for (int row = 0; row < ROWS_PER_BLOCK; ++row)
-  {
-    StoreRow(local, row, cacheRows[uint(ROWS_PER_BLOCK) * block + uint(row)]);
-  }
-#endif
-}
-
-// Loads the macrocell's blocks and their neighbours, from its first one on, each by a lane.
+// Loads the macrocell's blocks and their neighbours, from its first one on. Lanes take rows, those
+// of a block one after the other.
 void LoadSamples(ivec3 firstBlock)
 {
+  const uint rows = uint(ROWS_PER_BLOCK);
   const uint count = LOADED_SIDE * LOADED_SIDE * LOADED_SIDE;
-  for (uint i = gl_LocalInvocationIndex; i < count; i += GROUP_SIZE)
+  for (uint i = gl_LocalInvocationIndex; i < count * rows; i += GROUP_SIZE)
   {
-    uvec3 place = uvec3(i, i / LOADED_SIDE, i / (LOADED_SIDE * LOADED_SIDE)) % LOADED_SIDE;
+    uint n = i / rows;
+    uint row = i % rows;
+    uvec3 place = uvec3(n, n / LOADED_SIDE, n / (LOADED_SIDE * LOADED_SIDE)) % LOADED_SIDE;
     ivec3 local = ivec3(place);
     ivec3 block = firstBlock + local;
     if (all(lessThan(block, volume.Blocks)))
     {
-      LoadBlock(local, BlockIndex(block));
+      StoreRow(local, int(row), cacheRows[rows * PlaceInBox(block) + row]);
     }
   }
   barrier();

@@ -1,4 +1,5 @@
 // Decodes the blocks that rays have requested into free cache slots; without a cache, all blocks.
+// Before there are any rays, it fills the empty cache with boxes of blocks, for BlockRanges.
 
 #define CACHE_BY_ROWS
 
@@ -12,6 +13,10 @@
 // slot or no map page. The block may be requested again in the next pass.
 uint SlotFor(uint i, uint block)
 {
+  if (FillsBox())
+  {
+    return i;
+  }
   ivec3 coordinates = BlockCoordinates(block);
   uint macrocell = MacrocellIndex(MacrocellOf(coordinates));
   uint local = LocalIndex(coordinates);

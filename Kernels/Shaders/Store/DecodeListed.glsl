@@ -1,5 +1,5 @@
 // The loop of both decoding stages, an invocation for each block: over the blocks that rays have
-// requested, or without a cache a slice of all of them.
+// requested, or a box of blocks whose ranges are to be found, or without a cache a slice of all.
 
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
@@ -14,17 +14,29 @@ uint SlotFor(uint i, uint block);
 uint FirstSlot();
 
 #ifdef HAS_CACHE_MAP
+#include "Store/BlockBox.glsl"
+
+bool FillsBox()
+{
+  return box.Size.x > 0;
+}
+
 uint NumberOfListedBlocks()
 {
-  return min(control.Requests, cache.Slots);
+  return FillsBox() ? BlocksInBox() : min(control.Requests, cache.Slots);
 }
 
 uint ListedBlock(uint i)
 {
-  return cacheRequests[i];
+  return FillsBox() ? BlockInBox(i) : cacheRequests[i];
 }
 #else
 #include "Store/VolumeSlice.glsl"
+
+bool FillsBox()
+{
+  return false;
+}
 
 uint NumberOfListedBlocks()
 {
@@ -51,7 +63,7 @@ void main()
   for (uint i = FoldedGroup() * GROUP_SIZE + lane; i < number; i += stride)
   {
     uint block = ListedBlock(i);
-    if (InSegment(block))
+    if (FillsBox() || InSegment(block)) // a segment has the next one's first blocks, too
     {
       uint slot = SlotFor(i, block);
       if (slot != NONE)

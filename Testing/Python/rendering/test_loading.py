@@ -9,7 +9,7 @@ import progiso
 from helpers.gl_hooks import gl, intercepted, program_label
 from helpers.images import make_image, noise, reference_volume
 from helpers.messages import vtk_messages
-from helpers.scenes import CACHED, Scene, orbit
+from helpers.scenes import CACHED, Scene, least_budget, orbit
 
 CURRENT_PROGRAM = 0x8B8D
 SIZE = (120, 90)
@@ -41,11 +41,22 @@ def test_a_volume_is_prepared_by_slices(volume, settings):
 
     with intercepted("glDispatchCompute", dispatch):
         scene.render()
-    ranges = groups["BlockRanges"]
-    assert ranges[0] == 256 and len(ranges) > 1 and sum(ranges) == 9 * 9 * 9
-    if not settings:
-        blocks = groups["DecodeBlocks"]
-        assert blocks[0] == 256 * 64 / 32 and sum(blocks) >= 35 * 33 * 34 / 32
+    ranges, blocks = groups["BlockRanges"], groups["DecodeBlocks"]
+    assert 9 * 9 < ranges[0] <= 256 and len(ranges) > 1 and sum(ranges) == 9 * 9 * 9
+    if settings:  # boxes of blocks, a layer of which belongs to two of them
+        assert len(blocks) == len(ranges)
+        assert 35 * 33 * 34 <= 32 * sum(blocks) <= 1.5 * 35 * 33 * 34
+    else:
+        assert blocks[0] == 256 * 64 / 32 and 32 * sum(blocks) >= 35 * 33 * 34
+
+
+def test_ranges_are_the_same_however_small_the_cache(volume):
+    """The boxes of blocks whose ranges are found are as small as the cache."""
+    image, camera = volume
+    expected = Scene(image, 0.5, camera, SIZE).depth()
+    budget = least_budget(image, 0.5, camera, size=SIZE)
+    scene = Scene(image, 0.5, camera, SIZE, MemoryBudget=budget, LargestBuffer=600_000, **CACHED)
+    assert scene.depth().tobytes() == expected.tobytes()
 
 
 def test_slices_of_a_stream_in_several_buffers(volume):
