@@ -37,7 +37,7 @@ struct vtkCompressedVolumeBuilder::Work
     return static_cast<vtkTypeInt64>(this->Dimensions[0]) * this->Dimensions[1];
   }
 
-  Status CheckSlab(vtkDataArray* samples, int component) const;
+  Status CheckSlab(vtkDataArray* samples, int component, vtkUnsignedCharArray* hidden) const;
   Status AddSlab(vtkDataArray* samples, int component, int threads);
 
   int Dimensions[3];
@@ -51,7 +51,8 @@ struct vtkCompressedVolumeBuilder::Work
 };
 
 //------------------------------------------------------------------------------
-Status vtkCompressedVolumeBuilder::Work::CheckSlab(vtkDataArray* samples, int component) const
+Status vtkCompressedVolumeBuilder::Work::CheckSlab(
+  vtkDataArray* samples, int component, vtkUnsignedCharArray* hidden) const
 {
   const vtkTypeInt64 tuples = samples ? samples->GetNumberOfTuples() : 0;
   const vtkTypeInt64 slices = tuples / this->SamplesPerSlice();
@@ -76,6 +77,11 @@ Status vtkCompressedVolumeBuilder::Work::CheckSlab(vtkDataArray* samples, int co
     return Status::Error("Component is ", component, ", but the slab has ",
       samples->GetNumberOfComponents(), " component(s).");
   }
+  if (hidden && hidden->GetNumberOfValues() != tuples)
+  {
+    return Status::Error(
+      "There are ", hidden->GetNumberOfValues(), " values that hide ", tuples, " samples.");
+  }
   if (this->Slices > 0 && samples->GetDataType() != this->ScalarType)
   {
     return Status::Error("The slab is of type ", samples->GetDataTypeAsString(),
@@ -87,10 +93,6 @@ Status vtkCompressedVolumeBuilder::Work::CheckSlab(vtkDataArray* samples, int co
 //------------------------------------------------------------------------------
 Status vtkCompressedVolumeBuilder::Work::AddSlab(vtkDataArray* samples, int component, int threads)
 {
-  if (Status status = this->CheckSlab(samples, component); !status)
-  {
-    return status;
-  }
   if (this->Slices == 0)
   {
     this->ScalarType = samples->GetDataType();
@@ -185,15 +187,22 @@ bool vtkCompressedVolumeBuilder::Start(const int dims[3], double rate)
 }
 
 //------------------------------------------------------------------------------
-bool vtkCompressedVolumeBuilder::AddSlab(vtkDataArray* samples, int component)
+bool vtkCompressedVolumeBuilder::AddSlab(
+  vtkDataArray* samples, int component, vtkUnsignedCharArray* hidden)
 {
   if (!this->Volume)
   {
     return this->SetErrorWithoutVolume();
   }
-  this->Volume->Encoder.Hidden.HideNonFinite = this->MaskNonFinite;
-  this->Volume->Encoder.Units = { this->Offset, this->Scale };
-  const Status status = this->Volume->AddSlab(samples, component, this->NumberOfThreads);
+  Status status = this->Volume->CheckSlab(samples, component, hidden);
+  if (status)
+  {
+    SampleEncoder& encoder = this->Volume->Encoder;
+    encoder.Hidden = HiddenSamples::FromMask(hidden);
+    encoder.Hidden.HideNonFinite = this->MaskNonFinite;
+    encoder.Units = { this->Offset, this->Scale };
+    status = this->Volume->AddSlab(samples, component, this->NumberOfThreads);
+  }
   if (!status)
   {
     return this->SetError(status.GetMessage());

@@ -17,7 +17,7 @@
  * Every function returns false after an error. GetErrorMessage() then describes it in one sentence,
  * and only Start() can succeed.
  *
- * @sa vtkImageZFPCompress vtkCompressedVolume vtkZFPWriter
+ * @sa vtkImageZFPCompress vtkSampleUnitsFinder vtkCompressedVolume vtkZFPWriter
  */
 #ifndef vtkCompressedVolumeBuilder_h
 #define vtkCompressedVolumeBuilder_h
@@ -30,6 +30,7 @@
 
 class vtkDataArray;
 class vtkImageData;
+class vtkUnsignedCharArray;
 
 class VTKPROGISOFILTERS_EXPORT vtkCompressedVolumeBuilder : public vtkObject
 {
@@ -59,8 +60,8 @@ public:
   ///@{
   /**
    * The stream's units, see vtkCompressedVolume: the stream has (sample - Offset) / Scale as
-   * float32; Scale is above 0. Default 0 and 1. (vtkImageZFPCompress, which sees all samples,
-   * chooses them itself.) Must not change between slabs.
+   * float32; Scale is above 0. Default 0 and 1. vtkSampleUnitsFinder finds those that
+   * vtkImageZFPCompress, which sees all samples, chooses itself. Must not change between slabs.
    */
   vtkSetMacro(Offset, double);
   vtkGetMacro(Offset, double);
@@ -85,9 +86,10 @@ public:
   /**
    * Compresses the next slices: one component of an array whose number of tuples is a multiple of
    * dims[0]*dims[1], x fastest. Every slab except the last must have a multiple of 4 slices, and
-   * all must have one type. See MaskNonFinite for NaN.
+   * all must have one type. See MaskNonFinite for NaN. `hidden` has a value other than 0 for each
+   * sample that is hidden, whatever its value; null: none is.
    */
-  bool AddSlab(vtkDataArray* samples, int component = 0);
+  bool AddSlab(vtkDataArray* samples, int component = 0, vtkUnsignedCharArray* hidden = nullptr);
 
   /**
    * Slices added so far.

@@ -99,26 +99,6 @@ void CopyWithoutArrays(vtkImageData* input, vtkImageData* output)
   output->GetFieldData()->PassData(input->GetFieldData());
   vtkCompressedVolume::Remove(output);
 }
-
-//------------------------------------------------------------------------------
-// Encodes all samples, twice if the values turn out too small for zfp: then in other units.
-bool EncodeAll(BlockStream& blocks, vtkDataArray* samples, int component, SampleEncoder& encoder,
-  const ProgressCallback& progress)
-{
-  const SampleEncoder fresh = encoder;
-  const auto encode = [&]() {
-    return encoder.EncodeSlabs(blocks, 0, blocks.GetNumberOfSlabs(), samples, component, progress);
-  };
-  bool complete = encode();
-  if (complete && encoder.GetSummary().ShowsTinyBlocks())
-  {
-    const float magnitude = encoder.GetSummary().GetMagnitude();
-    encoder = fresh;
-    encoder.Units.Normalize(magnitude);
-    complete = encode();
-  }
-  return complete;
-}
 }
 
 //------------------------------------------------------------------------------
@@ -296,7 +276,8 @@ Status vtkImageZFPCompress::Work::Compress(const CompressedPart& part, vtkImageD
     return Status::Error("There is ", status.GetMessage(), ".");
   }
   BlockStream blocks(dims, blockBits, stream->GetPointer(0), this->Self->NumberOfThreads);
-  if (!EncodeAll(blocks, samples, component, encoder, ProgressOf(this->Self)))
+  if (!encoder.EncodeSlabs(
+        blocks, 0, blocks.GetNumberOfSlabs(), samples, component, ProgressOf(this->Self)))
   {
     return Status::Aborted();
   }

@@ -23,9 +23,10 @@
  *
  * If float32 cannot hold the samples, the stream has custom units (see vtkCompressedVolume): of
  * doubles and large integers that differ by less than a 16th of their magnitude, the middle is
- * subtracted, and values that are too large for float32, or all too small for zfp, are scaled by a
- * power of two. So float32 rounds by at most 2^-20 of the range. Each process' piece has its own
- * units. 64-bit integers beyond 2^53 are first rounded to doubles.
+ * subtracted. Values that are too large for float32, or all below 2^-74, among which zfp may find
+ * blocks too small, are scaled by a power of two. So float32 rounds by at most 2^-20 of the range.
+ * vtkSampleUnitsFinder makes the same choice. Each process' piece has its own units. 64-bit
+ * integers beyond 2^53 are first rounded to doubles.
  *
  * Blocks are encoded in parallel with OpenMP. The stream is bit-identical to that of libzfp's
  * zfp_compress(), whatever the number of threads, except for blocks of 4x4x4 samples that are all

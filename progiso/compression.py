@@ -14,8 +14,6 @@ from .options import CompressionOptions
 from .vtkProgIsoFilters import vtkCompressedVolume, vtkImageZFPCompress, vtkImageZFPDecompress
 
 _POINTS, _CELLS = 0, 1  # vtkDataObject::FieldAssociations
-#: Name of the array that hides points or cells.
-GHOSTS = "vtkGhostType"  # vtkDataSetAttributes::GhostArrayName()
 
 
 def compress(

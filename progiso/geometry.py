@@ -7,10 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkImageData
 
 from ._typing import Array, ImageLike
 from ._vtk import image_data
+
+#: Name of the array that hides points or cells.
+GHOSTS = "vtkGhostType"  # vtkDataSetAttributes::GhostArrayName()
 
 
 def image_from_array(
@@ -86,6 +89,7 @@ def as_image(volume: ImageLike) -> vtkImageData:
     volume : vtkmodules.vtkCommonDataModel.vtkImageData or numpy.ndarray
         An image, or the samples of one: a three-dimensional array that is indexed [x, y, z], as
         pyvista's ``wrap`` takes it. Where z comes first, as in a stack of slices, pass ``array.T``.
+        The masked samples of a `numpy.ma.MaskedArray` become hidden points.
 
     Returns
     -------
@@ -108,15 +112,83 @@ def as_image(volume: ImageLike) -> vtkImageData:
         return image_data(volume)
     if volume.ndim != 3:
         raise TypeError(f"an array must have 3 dimensions, this one has {volume.ndim}")
-    if volume.dtype.kind not in "biuf":
-        raise TypeError(f"an array must hold real numbers, this one has {volume.dtype}")
-    values = np.asarray(volume)
+    values, hidden = plain_samples(volume)
+    image = image_from_array(values.ravel(order="F"), volume.shape, name="values")
+    if hidden is not None:
+        hide_points(image, hidden.ravel(order="F"))
+    return image
+
+
+def plain_samples(samples: npt.ArrayLike) -> tuple[Array, npt.NDArray[np.bool_] | None]:
+    """Split samples into plain ones of a type that VTK has, and what a mask hides of them.
+
+    Parameters
+    ----------
+    samples : array_like
+        Truth values or real numbers of any type, byte order and class.
+
+    Returns
+    -------
+    values : numpy.ndarray
+        In native byte order: truth values as uint8, half precision as float32, long double
+        precision as float64. Not copied where nothing is converted.
+    hidden : numpy.ndarray of bool, or None
+        Of the same shape, true where a `numpy.ma.MaskedArray` is masked; None where nothing is.
+
+    Raises
+    ------
+    TypeError
+        When they are no real numbers.
+
+    Examples
+    --------
+    >>> values, hidden = plain_samples(np.ma.masked_equal([True, False], False))
+    >>> values.dtype, hidden
+    (dtype('uint8'), array([False,  True]))
+    """
+    values = np.asarray(np.ma.getdata(samples))
+    if values.dtype.kind not in "biuf":
+        raise TypeError(f"an array must hold real numbers, this one has {values.dtype}")
+    mask = np.ma.getmask(samples)
+    hidden = None if mask is np.ma.nomask or not mask.any() else np.asarray(mask)
     if values.dtype == bool:
-        values = values.view(np.uint8)
-    elif values.dtype.kind == "f" and values.dtype.itemsize not in (4, 8):  # VTK has no such type
-        values = values.astype(np.float32)
-    native = values.astype(values.dtype.newbyteorder("="), copy=False)
-    return image_from_array(native.ravel(order="F"), volume.shape, name="values")
+        return values.view(np.uint8), hidden
+    if values.dtype.kind == "f" and values.dtype.itemsize not in (4, 8):  # VTK has no such type
+        return values.astype(np.float32 if values.dtype.itemsize < 4 else np.float64), hidden
+    return values.astype(values.dtype.newbyteorder("="), copy=False), hidden
+
+
+def hide_points(image: vtkImageData, hidden: npt.NDArray[np.bool_]) -> None:
+    """Hide points of an image, beside those that its ghost array hides already.
+
+    Parameters
+    ----------
+    image : vtkmodules.vtkCommonDataModel.vtkImageData
+        Changed in place: it gets an array ``vtkGhostType`` of its points, or a new one.
+    hidden : numpy.ndarray of bool
+        One value for each point, x fastest: flat, or of shape (depth, height, width).
+
+    Raises
+    ------
+    ValueError
+        When the number of values is not that of the points.
+
+    Examples
+    --------
+    >>> image = image_from_array(np.arange(24.0), (4, 3, 2))
+    >>> hide_points(image, np.arange(24) == 5)
+    >>> image.IsPointVisible(5), image.IsPointVisible(6)
+    (0, 1)
+    """
+    if hidden.size != image.GetNumberOfPoints():
+        raise ValueError(f"{hidden.size} truth values for {image.GetNumberOfPoints()} points")
+    flags = np.where(hidden.reshape(-1), np.uint8(vtkDataSetAttributes.HIDDENPOINT), np.uint8(0))
+    before = image.GetPointData().GetArray(GHOSTS)
+    if before is not None:
+        flags |= vtk_to_numpy(before)
+    ghosts = numpy_to_vtk(flags, deep=True)
+    ghosts.SetName(GHOSTS)
+    image.GetPointData().AddArray(ghosts)
 
 
 def set_axes(image: vtkImageData, axes: npt.ArrayLike, origin: npt.ArrayLike) -> None:

@@ -13,8 +13,8 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from ._typing import Array, Progress
-from .compression import GHOSTS, compress, compress_with, decompress, describe, find_array
-from .geometry import image_from_array, samples_of
+from .compression import compress, compress_with, decompress, describe, find_array
+from .geometry import GHOSTS, image_from_array, samples_of
 from .options import CompressionOptions
 
 #: Bits of a block of 64 samples at the lowest and at the highest rate.

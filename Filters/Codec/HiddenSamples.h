@@ -8,6 +8,7 @@
 #define HiddenSamples_h
 
 #include "vtkType.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <cmath>
 
@@ -16,6 +17,15 @@ struct HiddenSamples
   const unsigned char* Flags = nullptr; ///< ghost flags of every tuple; null: no sample has any
   unsigned char HidingFlags = 0;        ///< flags that hide
   bool HideNonFinite = false;           ///< whether NaN and infinite samples are hidden
+
+  /// Hides the samples whose value in a mask, which may be null, is not 0.
+  static HiddenSamples FromMask(vtkUnsignedCharArray* mask)
+  {
+    HiddenSamples hidden;
+    hidden.Flags = mask ? mask->GetPointer(0) : nullptr;
+    hidden.HidingFlags = 0xff;
+    return hidden;
+  }
 
   bool MayHide() const { return this->Flags || this->HideNonFinite; }
 

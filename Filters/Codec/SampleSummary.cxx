@@ -89,9 +89,7 @@ float SampleSummary::GetMagnitude() const
 //------------------------------------------------------------------------------
 bool SampleSummary::ShowsTinyBlocks() const
 {
-  // beside a value that is 2^24 times larger, float32 may not tell a tiny value from zero
-  const float enough = TinyMagnitude * 16777216.0f;
-  return this->IsFinite() && this->TinyBlocks > 0 && this->GetMagnitude() < enough;
+  return this->IsFinite() && this->TinyBlocks > 0 && this->GetMagnitude() < SafeMagnitude;
 }
 
 //------------------------------------------------------------------------------

@@ -21,6 +21,9 @@ struct SampleSummary
   /// in float32.
   static constexpr float TinyMagnitude = 3.1554436e-30f; // 2^-98
 
+  /// Beside a value that is 2^24 times larger, float32 may not tell a tiny value from zero.
+  static constexpr float SafeMagnitude = TinyMagnitude * 16777216.0f; // 2^-74
+
   float Minimum = std::numeric_limits<float>::infinity();
   float Maximum = -std::numeric_limits<float>::infinity();
   vtkTypeInt64 NaNs = 0;

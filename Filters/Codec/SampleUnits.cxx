@@ -3,6 +3,7 @@
 #include "SampleUnits.h"
 
 #include "Codec/HiddenSamples.h"
+#include "Codec/SampleSummary.h"
 
 #include "vtkArrayDispatch.h"
 #include "vtkDataArray.h"
@@ -10,23 +11,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace
 {
+/// Tuples that are looked at before the finder asks whether it needs more.
+constexpr vtkTypeInt64 TuplesPerStep = vtkTypeInt64(1) << 22;
+
 //------------------------------------------------------------------------------
-// Finds the range of a component's visible, finite values; empty (low > high) if there are none.
-struct FindRangeWorker
+// Extends a range by a component's visible, finite values of some tuples.
+struct ExtendRangeWorker
 {
   template <typename ArrayT>
-  void operator()(ArrayT* array, int component, const HiddenSamples& hidden, double range[2]) const
+  void operator()(ArrayT* array, int component, const HiddenSamples& hidden, vtkTypeInt64 first,
+    vtkTypeInt64 last, double range[2]) const
   {
     const auto values = vtk::DataArrayValueRange(array);
     const vtkTypeInt64 stride = array->GetNumberOfComponents();
-    const vtkTypeInt64 tuples = array->GetNumberOfTuples();
-    double low = std::numeric_limits<double>::infinity(), high = -low;
+    double low = range[0], high = range[1];
 #pragma omp parallel for reduction(min : low) reduction(max : high)
-    for (vtkTypeInt64 tuple = 0; tuple < tuples; ++tuple)
+    for (vtkTypeInt64 tuple = first; tuple < last; ++tuple)
     {
       const double value = static_cast<double>(values[tuple * stride + component]);
       if (std::isfinite(value) && !hidden.IsFlagged(tuple))
@@ -41,59 +44,94 @@ struct FindRangeWorker
 };
 
 //------------------------------------------------------------------------------
-void FindVisibleRange(
-  vtkDataArray* array, int component, const HiddenSamples& hidden, double range[2])
-{
-  FindRangeWorker worker;
-  if (!vtkArrayDispatch::Dispatch::Execute(array, worker, component, hidden, range))
-  {
-    worker(array, component, hidden, range);
-  }
-}
-
-//------------------------------------------------------------------------------
 // Whether float32 holds all values of a type in a range.
-bool IsExactInFloat(int type, const double range[2])
+bool IsExactInFloat(int type, double low, double high)
 {
   const auto isExact = [](double value)
   { return static_cast<double>(static_cast<float>(value)) == value; };
   const double most = 16777216.0; // of whole numbers
-  return type == VTK_DOUBLE ? range[0] == range[1] && isExact(range[0])
-                            : -most <= range[0] && range[1] <= most;
+  return type == VTK_DOUBLE ? low == high && isExact(low) : -most <= low && high <= most;
 }
 }
 
 //------------------------------------------------------------------------------
 SampleUnits SampleUnits::Find(vtkDataArray* array, int component, const HiddenSamples& hidden)
 {
-  SampleUnits units;
-  if (array->GetDataTypeSize() <= 2 || array->GetDataType() == VTK_FLOAT)
-  {
-    return units;
-  }
-  double range[2];
-  FindVisibleRange(array, component, hidden, range);
-  const double extent = range[1] - range[0];
-  double magnitude = std::max(std::abs(range[0]), std::abs(range[1]));
-  if (!(extent >= 0.0) || IsExactInFloat(array->GetDataType(), range))
-  {
-    return units;
-  }
-  if (extent < magnitude / 16.0)
-  {
-    units.Offset = range[0] + extent / 2.0;
-    magnitude = std::max(std::abs(range[0] - units.Offset), std::abs(range[1] - units.Offset));
-  }
-  using Float = std::numeric_limits<float>;
-  if (magnitude > Float::max() || (magnitude > 0.0 && magnitude < Float::min()))
-  {
-    units.Normalize(magnitude); // what is too small for zfp alone is found when it is encoded
-  }
-  return units;
+  UnitsFinder finder;
+  finder.Add(array, component, hidden);
+  return finder.GetUnits();
 }
 
 //------------------------------------------------------------------------------
 void SampleUnits::Normalize(double magnitude)
 {
   this->Scale *= std::ldexp(1.0, std::ilogb(magnitude));
+}
+
+//------------------------------------------------------------------------------
+void UnitsFinder::Add(vtkDataArray* array, int component, const HiddenSamples& hidden)
+{
+  this->Type = array->GetDataType();
+  this->IsSmallType = array->GetDataTypeSize() <= 2;
+  const vtkTypeInt64 tuples = array->GetNumberOfTuples();
+  ExtendRangeWorker worker;
+  double range[2] = { this->Low, this->High };
+  for (vtkTypeInt64 first = 0; first < tuples && !this->IsSettled(); first += TuplesPerStep)
+  {
+    const vtkTypeInt64 last = std::min(first + TuplesPerStep, tuples);
+    if (!vtkArrayDispatch::Dispatch::Execute(array, worker, component, hidden, first, last, range))
+    {
+      worker(array, component, hidden, first, last, range);
+    }
+    this->Low = range[0];
+    this->High = range[1];
+  }
+}
+
+//------------------------------------------------------------------------------
+double UnitsFinder::GetMagnitude() const
+{
+  return std::max(std::abs(this->Low), std::abs(this->High));
+}
+
+//------------------------------------------------------------------------------
+// Once this is false of values that are not all the same, it stays false of more values.
+bool UnitsFinder::NeedsOffset() const
+{
+  return this->Type != VTK_FLOAT && !IsExactInFloat(this->Type, this->Low, this->High) &&
+    this->High - this->Low < this->GetMagnitude() / 16.0;
+}
+
+//------------------------------------------------------------------------------
+bool UnitsFinder::IsSettled() const
+{
+  if (this->IsSmallType || this->Type == VTK_DOUBLE)
+  {
+    return this->IsSmallType; // any double may be too large for float32
+  }
+  return this->HasValues() &&
+    (this->Type == VTK_FLOAT ? this->GetMagnitude() >= SampleSummary::SafeMagnitude
+                             : this->High - this->Low >= this->GetMagnitude() / 16.0);
+}
+
+//------------------------------------------------------------------------------
+SampleUnits UnitsFinder::GetUnits() const
+{
+  SampleUnits units;
+  if (this->IsSmallType || !this->HasValues())
+  {
+    return units;
+  }
+  double magnitude = this->GetMagnitude();
+  if (this->NeedsOffset())
+  {
+    units.Offset = this->Low + (this->High - this->Low) / 2.0;
+    magnitude = std::max(std::abs(this->Low - units.Offset), std::abs(this->High - units.Offset));
+  }
+  if (magnitude > std::numeric_limits<float>::max() ||
+    (magnitude > 0.0 && magnitude < SampleSummary::SafeMagnitude))
+  {
+    units.Normalize(magnitude);
+  }
+  return units;
 }

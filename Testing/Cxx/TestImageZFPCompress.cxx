@@ -200,9 +200,9 @@ TEST(ImageZFPCompress, TinyValues)
   std::replace(values.begin(), values.end(), 1.0f, 1e-25f);
   const auto scaled = Read(Compress(Image(dims, FloatArray(values))));
   EXPECT_TRUE(scaled->GetScale() == std::ldexp(1.0, -84) && scaled->GetOffset() == 0.0) << "scale";
-  std::replace(values.begin(), values.end(), 1e-31f, 4e-30f); // just large enough for zfp
+  std::replace(values.begin(), values.end(), 1e-25f, 6e-23f); // above 2^-74: zero does not show
   const auto small = Read(Compress(Image(dims, FloatArray(values))));
-  EXPECT_TRUE(Reference(dims, values, 8.0).Equals(small->GetStream())) << "small block";
+  EXPECT_TRUE(small->GetScale() == 1.0) << "small block";
 }
 
 //------------------------------------------------------------------------------

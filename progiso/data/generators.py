@@ -162,7 +162,15 @@ def generate_compressed(
     path = Path(folder) / f"{name}_{'x'.join(map(str, dimensions))}_rate{digits}.zfp"
     if not path.is_file():
         check_output(path)
-        save(compress_slabs(slice_at, dimensions, rate=rate, name=name, progress=progress), path)
+        volume = compress_slabs(
+            compute_slabs(slice_at, dimensions),
+            dimensions,
+            rate=rate,
+            name=name,
+            units=(0.0, 1.0),
+            progress=progress,
+        )
+        save(volume, path)
     return path
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager
@@ -15,8 +16,10 @@ from vtkmodules.vtkCommonCore import vtkDataArray
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from .._typing import Array, Dimensions, Progress
+from .._vtk import vtk_errors
+from ..geometry import plain_samples
 from ..options import CompressionOptions
-from ..vtkProgIsoFilters import vtkCompressedVolumeBuilder
+from ..vtkProgIsoFilters import vtkCompressedVolumeBuilder, vtkSampleUnitsFinder
 
 #: A function of a slice's number that returns the slice, of shape (height, width).
 _SliceAt = Callable[[int], npt.ArrayLike]
@@ -32,15 +35,16 @@ def compress_slabs(
     rate: float = 8.0,
     name: str = "scalars",
     mask_nan: bool = False,
-    units: tuple[float, float] = (0.0, 1.0),
+    units: tuple[float, float] | None = None,
     threads: int = 0,
     progress: Progress | None = None,
 ) -> vtkImageData:
     """Compress a volume that is computed or read a few slices at a time.
 
     Memory holds one slab and the compressed stream. The result is bit for bit that of `compress`
-    on the whole volume, except for values that float32 cannot hold: there `compress`, which sees
-    all values, chooses `units` itself.
+    on the whole volume. Only where slabs come once, from a generator, nobody can tell from the
+    first ones whether float32 will hold all values: then a warning names the `units` that would
+    have.
 
     Parameters
     ----------
@@ -48,8 +52,8 @@ def compress_slabs(
         Consecutive slabs of shape (depth, height, width), or slices of shape (height, width), of
         one numeric type, x fastest; of any depth, though 4 slices or more at a time are fastest.
         Each is used up before the next is asked for, so that its memory may be used again.
-        Or ``slice_at(z)``, a function of a slice's number that returns the slice; it is called
-        from several threads at once, and its values are taken as float32 (float64 with `units`).
+        Or ``slice_at(z)``, a function of a slice's number that returns the slice, of one type; it
+        is called from several threads at once. Masked samples (`numpy.ma`) are hidden.
     dimensions : sequence of int
         Samples along x (width), y (height) and z, each at least 2.
     rate : float, default: 8
@@ -58,9 +62,11 @@ def compress_slabs(
         Name of the array.
     mask_nan : bool, default: False
         Whether NaN and infinite samples are hidden, as in `compress`.
-    units : tuple of 2 float, default: (0, 1)
+    units : tuple of 2 float, optional
         Offset and scale: the stream has (value - offset) / scale, as float32. So it can hold small
-        differences on a large offset, and values beyond float32.
+        differences on a large offset, and values beyond float32. By default those that `compress`
+        chooses: for that, `slabs` are gone through twice where their type asks for it (float64, and
+        integers of 32 bits and more, unless small values come soon).
     threads : int, default: 0
         Threads that encode, and that call ``slice_at``; 0 for one per core.
     progress : callable, optional
@@ -75,6 +81,8 @@ def compress_slabs(
     ------
     ValueError
         When a slab's shape does not fit the dimensions.
+    TypeError
+        When slabs hold no real numbers, or slices are of another type than the first.
     RuntimeError
         When the rate, the dimensions or the units are out of range, there are too few or too many
         slices, or values are too small for ZFP, or NaN or infinite and not to be hidden; the
@@ -91,24 +99,69 @@ def compress_slabs(
     """
     width, height, depth = (int(n) for n in dimensions)
     size = (width, height, depth)
-    if callable(slabs):
-        kind = np.float32 if tuple(units) == (0.0, 1.0) else np.float64
-        slabs = compute_slabs(slabs, size, threads=threads, kind=kind)
-    arrays = (_vtk_array(slab) for slab in _whole_layers(slabs, size))
     options = CompressionOptions(rate=rate, mask_nan=mask_nan, threads=threads, progress=progress)
-    return build(arrays, size, name, options, units=units)
+    passes = _passes(slabs, size, threads)
+    if units is None and callable(passes):
+        units = units_of(passes())
+    layers = passes() if callable(passes) else passes
+    return build(layers, size, name, options, units=units)
+
+
+def units_of(
+    slabs: Iterable[npt.ArrayLike | vtkDataArray], *, component: int = 0, components: int = 1
+) -> tuple[float, float]:
+    """Choose the units of a volume that comes some slices at a time, as `compress` does.
+
+    Parameters
+    ----------
+    slabs : iterable of array_like or vtkmodules.vtkCommonCore.vtkDataArray
+        The volume's samples, all of one type, cut in any way. Not all are asked for where the first
+        ones settle the matter: none but the first where the type has at most 16 bits, few where it
+        is float32, or where integers lie close to zero. Masked (`numpy.ma`), NaN and infinite
+        samples do not count.
+    component : int, default: 0
+        Component that is compressed.
+    components : int, default: 1
+        Values per sample of arrays, along the last axis; VTK's arrays know theirs.
+
+    Returns
+    -------
+    offset, scale : float
+        What `compress_slabs` takes as ``units``: 0 and 1 where float32 holds the values as they
+        are.
+
+    Examples
+    --------
+    >>> units_of([np.arange(12.0).reshape(3, 4), np.arange(1e8, 1e8 + 12).reshape(3, 4)])
+    (0.0, 1.0)
+    >>> units_of([np.full((3, 4), 101325.25), np.full((3, 4), 101325.75)])
+    (101325.5, 1.0)
+    """
+    finder = vtkSampleUnitsFinder()
+    for slab in slabs:
+        samples, hidden = _vtk_arrays(slab, component, components)
+        with vtk_errors("cannot choose units"):
+            if finder.AddSamples(samples, component, hidden):
+                break
+    return finder.GetOffset(), finder.GetScale()
 
 
 def build(
-    arrays: Iterable[vtkDataArray],
+    slabs: Iterable[npt.ArrayLike | vtkDataArray],
     dimensions: Dimensions,
     name: str,
     options: CompressionOptions,
     *,
-    units: tuple[float, float] = (0.0, 1.0),
+    units: tuple[float, float] | None = None,
+    components: int = 1,
 ) -> vtkImageData:
-    """Compress slabs of whole layers of blocks that are VTK arrays; see `compress_slabs`."""
-    offset, scale = map(float, units)
+    """Compress slabs of whole layers of blocks; see `compress_slabs`.
+
+    They are arrays of shape (depth, height, width), with `components` more values where there are
+    several, whose masked samples are hidden, or VTK's. Where `units` are None nobody looked for
+    them: values that float32 cannot hold are compressed as they are, and a warning says so.
+    """
+    offset, scale = (0.0, 1.0) if units is None else map(float, units)
     builder = vtkCompressedVolumeBuilder()
     builder.SetArrayName(name)
     builder.SetNumberOfThreads(options.threads)
@@ -116,13 +169,46 @@ def build(
     builder.SetOffset(offset)
     builder.SetScale(scale)
     _require(builder.Start(dimensions, options.rate), builder)
-    for array in arrays:
-        _require(builder.AddSlab(array, options.component), builder)
+    finder = vtkSampleUnitsFinder() if units is None else None
+    for slab in slabs:
+        samples, hidden = _vtk_arrays(slab, options.component, components)
+        if finder is not None and samples.GetNumberOfComponents() > options.component >= 0:
+            finder.AddSamples(samples, options.component, hidden)
+        if not builder.AddSlab(samples, options.component, hidden):
+            raise RuntimeError(f"cannot compress: {builder.GetErrorMessage()}{_advice(finder)}")
         if options.progress is not None:
             options.progress(builder.GetNumberOfSlices() / dimensions[2])
     image = vtkImageData()
-    _require(builder.Finish(image), builder)
+    if not builder.Finish(image):
+        raise RuntimeError(f"cannot compress: {builder.GetErrorMessage()}{_advice(finder)}")
+    if _advice(finder):
+        warnings.warn(f"float32 cannot hold the samples{_advice(finder)}", stacklevel=3)
     return image
+
+
+def _advice(finder: vtkSampleUnitsFinder | None) -> str:
+    """Say what to do about values that a single pass could not compress well."""
+    units = (0.0, 1.0) if finder is None else (finder.GetOffset(), finder.GetScale())
+    if units == (0.0, 1.0):
+        return ""
+    return (
+        f" (slabs that come once are compressed as they are: give units={units!r}, or slabs that "
+        "can be gone through twice)"
+    )
+
+
+def _passes(
+    slabs: Iterable[npt.ArrayLike] | _SliceAt, dimensions: Dimensions, threads: int
+) -> Iterator[Array] | Callable[[], Iterator[Array]]:
+    """Return whole layers of blocks, or where slabs can be gone through again, what makes these."""
+    if callable(slabs):
+        slice_at = slabs
+        kind = plain_samples(slice_at(0))[0].dtype
+        return lambda: compute_slabs(slice_at, dimensions, threads=threads, kind=kind)
+    if iter(slabs) is slabs:
+        return _whole_layers(slabs, dimensions)
+    given = slabs
+    return lambda: _whole_layers(given, dimensions)
 
 
 def compute_slabs(
@@ -144,11 +230,18 @@ def compute_slabs(
     threads : int, default: 0
         0 for one per core.
     kind : numpy.dtype, default: float32
+        Type of the slabs; other floating point values are rounded to it.
 
     Yields
     ------
     numpy.ndarray of that kind, shape (depth, height, width)
-        The next slices. The same memory every time: use it before the next is asked for.
+        The next slices, a masked array where one of them is. The same memory every time: use it
+        before the next is asked for.
+
+    Raises
+    ------
+    TypeError
+        When a slice is of a type that the kind cannot hold.
 
     Examples
     --------
@@ -158,16 +251,23 @@ def compute_slabs(
     width, height, slices = dimensions
     threads = threads or _cores()
     worthwhile = max(threads, _WORTHWHILE // (width * height))
-    slab = np.empty((min(slices, -(-worthwhile // 4) * 4), height, width), kind)
+    slab: Array = np.empty((min(slices, -(-worthwhile // 4) * 4), height, width), kind)
+    masks: dict[int, Array] = {}
 
     def compute(place: int, z: int) -> None:
-        slab[place] = slice_at(z)
+        values, hidden = plain_samples(slice_at(z))
+        if not np.can_cast(values.dtype, slab.dtype, "same_kind"):
+            raise TypeError(f"slice {z} is of type {values.dtype}, not {slab.dtype} as the first")
+        slab[place] = values
+        if hidden is not None:
+            masks[place] = hidden
 
     with _one_blas_thread(), ThreadPoolExecutor(threads) as pool:
         for first in range(0, slices, len(slab)):
             count = min(len(slab), slices - first)
+            masks.clear()
             list(pool.map(compute, range(count), range(first, first + count)))
-            yield slab[:count]
+            yield _masked(slab[:count], masks)
 
 
 def _cores() -> int:
@@ -184,18 +284,28 @@ def _one_blas_thread() -> AbstractContextManager[Any]:
     return threadpool_limits(limits=1, user_api="blas")
 
 
+def _masked(slab: Array, masks: dict[int, Array]) -> Array:
+    """Mask some slices of a slab."""
+    if not masks:
+        return slab
+    hidden = np.zeros(slab.shape, bool)
+    for place, mask in masks.items():
+        hidden[place] = mask
+    return np.ma.MaskedArray(slab, hidden, copy=False)
+
+
 def _whole_layers(slabs: Iterable[npt.ArrayLike], dimensions: Dimensions) -> Iterator[Array]:
     """Regroup slabs so that all but the last have a multiple of 4 slices: whole blocks."""
     width, height, _ = dimensions
     rest: Array | None = None
     for number, given in enumerate(slabs):
-        slab = np.asarray(given)
+        slab = np.ma.asanyarray(given) if np.ma.isMA(given) else np.asarray(given)
         slab = slab[np.newaxis] if slab.ndim == 2 else slab
         if slab.ndim != 3 or slab.shape[1:] != (height, width):
             raise ValueError(
                 f"slab {number} has shape {slab.shape}, not (any depth, {height}, {width})"
             )
-        slab = slab if rest is None else np.concatenate([rest, slab])
+        slab = slab if rest is None else _joined(rest, slab)
         whole = len(slab) // 4 * 4
         if whole:
             yield slab[:whole]
@@ -204,10 +314,28 @@ def _whole_layers(slabs: Iterable[npt.ArrayLike], dimensions: Dimensions) -> Ite
         yield rest
 
 
-def _vtk_array(slab: Array) -> vtkDataArray:
-    """View a slab as a VTK array; it is copied only where its memory is in another order."""
-    native = slab.astype(slab.dtype.newbyteorder("="), copy=False)
-    return numpy_to_vtk(np.ascontiguousarray(native).reshape(-1))
+def _joined(first: Array, second: Array) -> Array:
+    """Concatenate slabs, with their masks where there are any."""
+    masked = np.ma.isMA(first) or np.ma.isMA(second)
+    return (np.ma.concatenate if masked else np.concatenate)([first, second])
+
+
+def _vtk_arrays(
+    slab: npt.ArrayLike | vtkDataArray, component: int, components: int
+) -> tuple[vtkDataArray, vtkDataArray | None]:
+    """View a slab, and what is hidden of one component, as VTK arrays.
+
+    It is copied only where its memory is in another order.
+    """
+    if isinstance(slab, vtkDataArray):
+        return slab, None
+    values, mask = plain_samples(slab)
+    flat = np.ascontiguousarray(values).reshape(-1, components)
+    samples = numpy_to_vtk(flat if components > 1 else flat[:, 0])
+    if mask is None or not 0 <= component < components:
+        return samples, None
+    hidden = np.ascontiguousarray(mask.reshape(-1, components)[:, component])
+    return samples, numpy_to_vtk(hidden.view(np.uint8), deep=True)
 
 
 def _require(succeeded: bool, builder: vtkCompressedVolumeBuilder) -> None:

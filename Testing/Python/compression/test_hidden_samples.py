@@ -22,6 +22,7 @@ from helpers.holes import (
 )
 from helpers.images import (
     blobs,
+    check_same,
     make_image,
     metadata,
     noise,
@@ -30,7 +31,8 @@ from helpers.images import (
     samples_of,
     stream_of,
 )
-from progiso import vtkCompressedVolume
+from progiso import vtkCompressedVolume, vtkCompressedVolumeBuilder
+from progiso.geometry import hide_points
 
 
 @settings(max_examples=40, deadline=None, derandomize=True)
@@ -108,6 +110,64 @@ def test_slabs_and_files_hide_alike(tmp_path):
         assert np.array_equal(metadata(volume, "HiddenSamples"), metadata(whole, "HiddenSamples"))
     with pytest.raises(RuntimeError, match="infinite"):
         progiso.compress_slabs(iter(values), SHAPE[::-1], rate=5)
+
+
+KINDS = ("?", "u1", ">i2", "i4", "u8", "f2", "f4", ">f8", "g")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_masked_samples_are_hidden(kind):
+    """Of every type, whatever lies under the mask, in one array or in slabs cut anyhow."""
+    hidden = ball(SHAPE, 9)
+    values = (10 + 9 * blobs(SHAPE, 3)).astype(kind)
+    values[hidden] = np.nan if values.dtype.kind == "f" else 99
+    array = np.ma.MaskedArray(values, hidden)
+    volume = progiso.compress(array.T, rate=32)
+    assert np.array_equal(np.isnan(samples_of(progiso.decompress(volume))), hidden)
+    low, high = array.min(), array.max()
+    assert progiso.describe(volume)["range"] == [float(low), float(high)]
+    cut = [array[:3], array[3:4], array[4:9].filled(0) if not hidden[4:9].any() else array[4:9]]
+    for slabs in (array, iter([*cut, array[9:]]), lambda z: array[z]):
+        again = progiso.compress_slabs(slabs, SHAPE[::-1], rate=32, name="values")
+        check_same(again, volume)
+        assert np.array_equal(metadata(again, "HiddenSamples"), metadata(volume, "HiddenSamples"))
+
+
+def test_masks_without_effect():
+    """Arrays with an empty mask, and other classes of arrays, are arrays."""
+    values = blobs(SHAPE, 3)
+    expected = progiso.compress(values.T, rate=8)
+    for array in (np.ma.array(values), np.ma.MaskedArray(values, False), values.view(Subclass)):
+        check_same(progiso.compress(array.T, rate=8), expected)
+        assert metadata(expected, "Version")[0] == 1
+    with pytest.raises(TypeError, match="3 dimensions, this one has 2"):
+        progiso.compress(np.asmatrix(values[0]))
+    everything = np.ma.MaskedArray(values, True)
+    assert np.isnan(samples_of(progiso.decompress(progiso.compress(everything)))).all()
+
+
+class Subclass(np.ndarray):
+    pass
+
+
+def test_hide_points_adds_to_what_is_hidden():
+    image = make_image(noise((3, 4, 5)))
+    first, second = np.zeros((3, 4, 5), bool), np.zeros(60, bool)
+    first[1, 2, 3] = second[7] = True
+    hide_points(image, first)
+    hide_points(image, second)
+    flags = vtk_to_numpy(image.GetPointData().GetArray("vtkGhostType"))
+    assert np.array_equal(flags == HIDDEN_POINT, first.ravel() | second)
+    with pytest.raises(ValueError, match="59 truth values for 60 points"):
+        hide_points(image, second[:59])
+
+
+def test_a_mask_of_another_size_is_refused():
+    builder = vtkCompressedVolumeBuilder()
+    assert builder.Start((4, 4, 4), 8)
+    samples, hidden = (numpy_to_vtk(np.zeros(n, np.uint8), deep=True) for n in (64, 63))
+    assert not builder.AddSlab(samples, 0, hidden)
+    assert "63 values that hide 64 samples" in builder.GetErrorMessage()
 
 
 def test_a_piece_takes_its_part_of_the_mask():

@@ -106,6 +106,10 @@ def test_shapes_are_checked():
 def test_types_must_agree():
     with pytest.raises(RuntimeError, match="double"):
         progiso.compress_slabs([np.zeros((4, 6, 5), np.int16), np.zeros((4, 6, 5))], (5, 6, 8))
+    with pytest.raises(TypeError, match="slice 3 is of type float64, not int16"):
+        progiso.compress_slabs(
+            lambda z: np.zeros((6, 5), np.int16 if z < 3 else float), (5, 6, 8), threads=1
+        )
 
 
 def test_errors_of_a_function_come_through():

@@ -3,6 +3,10 @@
 Whoever reads them reads the samples. See also test_filters.py and the rows of test_verify.py.
 """
 
+import ast
+import re
+import warnings
+
 import numpy as np
 import pytest
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -11,10 +15,19 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction
 
 import progiso
-from helpers.images import blobs, make_image, metadata, reference_volume, samples_of, stream_of
+from helpers.images import (
+    blobs,
+    check_same,
+    make_image,
+    metadata,
+    reference_volume,
+    samples_of,
+    stream_of,
+)
 from helpers.messages import vtk_messages
 from helpers.scenes import CACHED, Scene, orbit
 from progiso import vtkCompressedVolume, vtkCompressedVolumeBuilder
+from progiso.io.slabs import units_of
 from progiso.measure import tolerances
 
 OFFSET, SCALE = 1e6, 2.0**-10
@@ -122,6 +135,84 @@ def test_slabs(shifted):
         assert stream_of(image) == stream_of(shifted)
     with pytest.raises(RuntimeError, match="scale"):
         progiso.compress_slabs(iter(values), SHAPE[::-1], units=(0, -1))
+
+
+R = np.sqrt(((np.mgrid[0:21, 0:18, 0:16] - 8.5) ** 2).sum(0))  # [z, y, x]
+BEYOND_FLOAT = {
+    "pressure": 101325 + 1e-4 * R,
+    "1e8": 1e8 + 1e-3 * R,
+    "1e300": 1e300 * R,
+    "denormal": 1e-42 * R,
+    "denormal doubles": 1e-310 * R,
+    "small float32": (1e-33 * R**4).astype(np.float32),
+    "ids of 2^27": (2**27 + R).astype(np.int32),
+    "ids of 2^24": (2**24 + R).astype(np.uint32),
+    "ids of 2^60": (2**60 + (R * 1000).astype(np.int64)),
+    "long double": (1e8 + 1e-3 * R).astype(np.longdouble),
+    "constant": np.full(R.shape, 0.1),
+    "big-endian": (101325 + 1e-4 * R).astype(">f8"),
+}
+
+
+@pytest.mark.parametrize("case", BEYOND_FLOAT)
+def test_slabs_choose_the_units_of_compress(case):
+    """Also from slices, slabs of any depth, a function, and a whole array."""
+    values = BEYOND_FLOAT[case]
+    expected = progiso.compress(values.T, rate=16)
+    about = progiso.describe(expected)
+    assert (about["offset"], about["scale"]) != (0, 1)
+    for slabs in (values, [values[:3], values[3:]], lambda z: values[z]):
+        check_same(progiso.compress_slabs(slabs, R.shape[::-1], rate=16, name="values"), expected)
+        assert units_of(values[z] for z in range(len(R))) == (about["offset"], about["scale"])
+
+
+@pytest.mark.parametrize("case", sorted(set(BEYOND_FLOAT) - {"constant"}))
+def test_slabs_that_come_once_say_what_they_lack(case):
+    """The units of the warning, or of the error, are those that hold the values."""
+    values = BEYOND_FLOAT[case]
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            progiso.compress_slabs(iter(values), R.shape[::-1], rate=16)
+            (message,) = [str(warning.message) for warning in caught]
+        except RuntimeError as error:
+            message = str(error)
+    units = ast.literal_eval(re.search(r"units=(\(.*?\))", message).group(1))
+    if case == "1e300":  # told as soon as one value is infinite, when others are still to come
+        assert units[1] > 1e298
+        return
+    again = progiso.compress_slabs(iter(values), R.shape[::-1], rate=16, units=units)
+    assert stream_of(again) == stream_of(progiso.compress(values.T, rate=16))
+
+
+HELD = {
+    "float32": (R.astype(np.float32), 1),
+    "uint16": (R.astype(np.uint16), 1),
+    "truth values": (R < 8, 1),
+    "ids from 0": (R.astype(np.int64) * 2**30, 1),
+    "doubles": (R, 21),
+}
+
+
+@pytest.mark.parametrize("case", HELD)
+def test_as_few_slabs_are_asked_for_as_settle_the_units(case):
+    values, needed = HELD[case]
+    asked = []
+    assert units_of(asked.append(z) or values[z] for z in range(len(values))) == (0, 1)
+    assert len(asked) == needed
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        progiso.compress_slabs(iter(values), R.shape[::-1], rate=4)
+
+
+def test_units_do_not_depend_on_what_is_hidden():
+    values = np.ma.masked_less(101325 + 1e-4 * R, 101325.0005)
+    values.data[values.mask] = -9999
+    offset, scale = units_of(values)
+    assert (offset, scale) == units_of(values.filled(np.nan)) and offset > 101325 and scale == 1
+    assert units_of([np.full((4, 4), np.nan)]) == (0, 1)
+    with pytest.raises(RuntimeError, match="Component is 2"):
+        units_of(values, component=2)
 
 
 @pytest.mark.parametrize("scale", [0.0, -1.0, float("nan"), float("inf")])
