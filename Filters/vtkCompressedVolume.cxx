@@ -86,6 +86,7 @@ void vtkCompressedVolume::Clear()
   this->Association = PointData;
   this->HiddenSamples = this->HiddenCells = vtkBlockMask();
   this->Stream = nullptr;
+  this->HasChecksums = false;
   this->Modified();
 }
 
@@ -292,5 +293,6 @@ void vtkCompressedVolume::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "HiddenCells: " << this->HiddenCells.GetRuns().size() << " runs\n";
   os << indent << "Stream: ";
   this->Stream ? os << this->Stream->GetNumberOfValues() << " bytes\n" : os << "(none)\n";
+  os << indent << "HasChecksums: " << (this->HasChecksums ? "yes\n" : "no\n");
   os << indent << "ErrorMessage: " << this->ErrorMessage << "\n";
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CompressedVolumeFormat.h"
 
+#include "Format/Checksums.h"
 #include "Format/FieldArrays.h"
 #include "Pieces/PieceExtents.h"
 
@@ -13,6 +14,7 @@
 #include "vtkIntArray.h"
 #include "vtkStringArray.h"
 #include "vtkTypeInt64Array.h"
+#include "vtkTypeUInt32Array.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -26,6 +28,7 @@ namespace
 using namespace FieldArrays;
 using Volume = vtkCompressedVolume;
 
+const char* const Prefix = "ProgIso.ZFP.";
 const char* const VersionName = "ProgIso.ZFP.Version";
 const char* const StreamName = "ProgIso.ZFP.Stream";
 const char* const BlockBitsName = "ProgIso.ZFP.BlockBits";
@@ -40,10 +43,15 @@ const char* const OffsetName = "ProgIso.ZFP.Offset";
 const char* const ScaleName = "ProgIso.ZFP.Scale";
 const char* const HiddenSamplesName = "ProgIso.ZFP.HiddenSamples";
 const char* const HiddenCellsName = "ProgIso.ZFP.HiddenCells";
+const char* const PageChecksumsName = "ProgIso.ZFP.PageChecksums";
+const char* const MetadataChecksumName = "ProgIso.ZFP.MetadataChecksum";
 
 const char* const AllNames[] = { VersionName, StreamName, BlockBitsName, DimensionsName, RangeName,
   ScalarTypeName, ArrayNameName, ComponentName, AssociationName, ExtentName, OffsetName, ScaleName,
-  HiddenSamplesName, HiddenCellsName };
+  HiddenSamplesName, HiddenCellsName, PageChecksumsName, MetadataChecksumName };
+
+// From this version of the format on, checksums are there; before, there were none.
+constexpr int FirstVersionWithChecksums = 3;
 
 constexpr int MaximumInt = std::numeric_limits<int>::max();
 
@@ -90,6 +98,12 @@ Status CheckVersion(vtkFieldData* fields)
     ? Status()
     : Status::Error("it has version ", version, " of the format, this ProgIso reads version ",
         +Volume::FormatVersion, " and older (a newer ProgIso wrote it)");
+}
+
+//------------------------------------------------------------------------------
+vtkTypeUInt32 ChecksumOfMetadata(vtkFieldData* fields)
+{
+  return Checksums::OfFields(fields, Prefix, StreamName, MetadataChecksumName);
 }
 
 //------------------------------------------------------------------------------
@@ -289,6 +303,61 @@ Status ReadStream(vtkImageData* image, Volume* volume)
 }
 
 //------------------------------------------------------------------------------
+// Checks that nothing of the metadata has changed. Comes after all that each array is checked for,
+// which says more on what is wrong.
+Status CheckMetadata(vtkImageData* image, Volume* volume)
+{
+  vtkFieldData* const fields = image->GetFieldData();
+  int version = 0;
+  const Status isOld = GetInteger(fields, VersionName, 1, FirstVersionWithChecksums - 1, version);
+  if (isOld && !fields->HasArray(MetadataChecksumName) && !fields->HasArray(PageChecksumsName))
+  {
+    return {};
+  }
+  vtkTypeInt64 expected = 0;
+  if (Status status = GetIntegers(fields, MetadataChecksumName, 1, &expected); !status)
+  {
+    return status;
+  }
+  volume->SetHasChecksums(true);
+  return static_cast<vtkTypeInt64>(ChecksumOfMetadata(fields)) == expected
+    ? Status()
+    : Status::Error("its metadata (arrays of field data named ", Prefix,
+        "*) do not match their "
+        "checksum: they are damaged, or were changed or rounded by what wrote them");
+}
+
+//------------------------------------------------------------------------------
+// Compares the stream with its checksums, if it has any, once: what is known to be intact is not
+// looked at again until it is modified.
+Status CheckStream(vtkImageData* image, Volume* volume)
+{
+  if (!volume->GetHasChecksums())
+  {
+    return {};
+  }
+  const vtkTypeInt64 pages = Checksums::NumberOfPages(
+    Volume::StreamBytesFor(volume->GetDimensions(), volume->GetBlockBits()));
+  auto* const checksums = vtkArrayDownCast<vtkTypeUInt32Array>(
+    image->GetFieldData()->GetAbstractArray(PageChecksumsName));
+  if (!checksums || checksums->GetNumberOfValues() != pages)
+  {
+    return Status::Error(
+      "its field data array ", PageChecksumsName, " does not hold ", pages, " 32-bit integers");
+  }
+  if (Checksums::IsKnownIntact(volume->GetStream(), checksums))
+  {
+    return {};
+  }
+  const Status status = Checksums::CheckPages(volume, checksums);
+  if (status)
+  {
+    Checksums::SetIntact(volume->GetStream(), checksums);
+  }
+  return status.WithPrefix(std::string(StreamName) + " ");
+}
+
+//------------------------------------------------------------------------------
 Status ReadUnits(vtkImageData* image, Volume* volume)
 {
   vtkFieldData* fields = image->GetFieldData();
@@ -338,6 +407,18 @@ Status ReadHidden(vtkImageData* image, Volume* volume)
   volume->SetHiddenCells(cells);
   return {};
 }
+
+//------------------------------------------------------------------------------
+void StoreChecksums(Volume* volume, vtkFieldData* fields)
+{
+  vtkUnsignedCharArray* const stream = volume->GetStream();
+  const auto checksums = Checksums::OfPages(
+    stream, Volume::StreamBytesFor(volume->GetDimensions(), volume->GetBlockBits()));
+  checksums->SetName(PageChecksumsName);
+  fields->AddArray(checksums);
+  StoreValue<vtkTypeUInt32Array>(fields, MetadataChecksumName, ChecksumOfMetadata(fields));
+  Checksums::SetIntact(stream, checksums);
+}
 }
 
 //------------------------------------------------------------------------------
@@ -354,8 +435,8 @@ Status CompressedVolumeFormat::Read(vtkImageData* image, vtkCompressedVolume* vo
     return Status::Error(image ? "it has no field data array ProgIso.ZFP.Stream (compress it first)"
                                : "there is no image");
   }
-  for (const auto& read :
-    { ReadNumbers, ReadGeometry, ReadArrayName, ReadStream, ReadUnits, ReadHidden })
+  for (const auto& read : { ReadNumbers, ReadGeometry, ReadArrayName, ReadStream, ReadUnits,
+         ReadHidden, CheckMetadata, CheckStream })
   {
     if (Status status = read(image, volume); !status)
     {
@@ -372,8 +453,7 @@ void CompressedVolumeFormat::Write(vtkCompressedVolume* volume, vtkImageData* im
   vtkFieldData* fields = image->GetFieldData();
   const int* extent = volume->GetExtent();
   extent = extent[0] > extent[1] ? image->GetExtent() : extent;
-  const bool needsNewest = volume->HidesAny() || volume->HasUnits();
-  StoreValue<vtkIntArray>(fields, VersionName, needsNewest ? Volume::FormatVersion : 1);
+  StoreValue<vtkIntArray>(fields, VersionName, +Volume::FormatVersion);
   StoreValue<vtkIntArray>(fields, BlockBitsName, volume->GetBlockBits());
   StoreValues<vtkTypeInt64Array>(fields, DimensionsName, volume->GetDimensions(), 3);
   StoreValues<vtkDoubleArray>(fields, RangeName, volume->GetRange(), 2);
@@ -391,6 +471,7 @@ void CompressedVolumeFormat::Write(vtkCompressedVolume* volume, vtkImageData* im
   StoreMask(fields, HiddenCellsName, volume->GetHiddenCells());
   volume->GetStream()->SetName(StreamName);
   fields->AddArray(volume->GetStream());
+  StoreChecksums(volume, fields); // last: of what is there then
 }
 
 //------------------------------------------------------------------------------

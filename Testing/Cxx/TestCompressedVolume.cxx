@@ -89,7 +89,7 @@ TEST(CompressedVolume, Rejects)
     EXPECT_FALSE(ReadWith(name, Values<vtkFloatArray>({ 1.f }), name)) << name << " of wrong type";
   }
   const vtkTypeInt64 beyond = vtkTypeInt64(1) << 62;
-  EXPECT_FALSE(ReadWith("Version", Values<vtkIntArray>({ 3 }), "version 3")) << "version";
+  EXPECT_FALSE(ReadWith("Version", Values<vtkIntArray>({ 4 }), "version 4")) << "version";
   EXPECT_FALSE(ReadWith("BlockBits", Values<vtkIntArray>({ 8 }), "BlockBits is 8")) << "too few";
   EXPECT_FALSE(ReadWith("BlockBits", Values<vtkIntArray>({ 2049 }), "BlockBits is 2049"))
     << "too many";

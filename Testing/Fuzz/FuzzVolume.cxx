@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Runs vtkCompressedVolume::Read() on field data in any state, and decompresses, contours, crops
-// and writes what it accepts.
+// and writes what it accepts. What is written must be refused after the flip of any bit, and may
+// not crash after worse.
 #include "HostileImage.h"
 
 #include <vtkFlyingEdges3D.h>
@@ -131,6 +132,56 @@ void CheckContour(
 }
 }
 
+namespace
+{
+//------------------------------------------------------------------------------
+// Stores a volume with checksums, in memory of its own.
+vtkSmartPointer<vtkImageData> WithChecksums(vtkCompressedVolume* volume)
+{
+  vtkNew<vtkImageData> image;
+  image->SetExtent(volume->GetExtent());
+  volume->Write(image);
+  auto copy = vtkSmartPointer<vtkImageData>::New();
+  copy->DeepCopy(image);
+  return copy;
+}
+
+//------------------------------------------------------------------------------
+// Flips one bit of an array of numbers that checksums cover.
+void CheckFlip(vtkCompressedVolume* volume, Bytes& bytes)
+{
+  const auto image = WithChecksums(volume);
+  vtkFieldData* const fields = image->GetFieldData();
+  vtkNew<vtkCompressedVolume> again;
+  CHECK(again->Read(image) && again->GetHasChecksums(), again->GetErrorMessage());
+  auto* const array = vtkArrayDownCast<vtkDataArray>(
+    fields->GetAbstractArray(FieldArrays[bytes.Below(NumberOfFieldArrays)].Name));
+  if (!array || array->GetNumberOfValues() == 0)
+  {
+    return;
+  }
+  const bool isStream = array == fields->GetArray("ProgIso.ZFP.Stream");
+  const vtkTypeInt64 size = isStream
+    ? vtkCompressedVolume::StreamBytesFor(volume->GetDimensions(), volume->GetBlockBits())
+    : array->GetNumberOfValues() * array->GetDataTypeSize();
+  const vtkTypeInt64 at = bytes.Take<std::uint32_t>() % size;
+  static_cast<unsigned char*>(array->GetVoidPointer(0))[at] ^= 1 << bytes.Below(8);
+  array->Modified();
+  CHECK(!again->Read(image), array->GetName() << " byte " << at);
+}
+
+//------------------------------------------------------------------------------
+// Damages arrays of a volume with checksums.
+void CheckDamage(vtkCompressedVolume* volume, Bytes& bytes)
+{
+  const auto image = WithChecksums(volume);
+  DamageOne(image, bytes);
+  vtkNew<vtkCompressedVolume> again;
+  const bool accepted = again->Read(image);
+  CHECK(accepted == (Decompress(image) != nullptr), again->GetErrorMessage());
+}
+}
+
 //------------------------------------------------------------------------------
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
@@ -153,6 +204,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const auto whole = DecompressWhole(volume);
   CheckContour(image, volume, whole, bytes);
+  CheckFlip(volume, bytes);
+  CheckDamage(volume, bytes);
   CheckCrop(volume, whole, bytes);
   return 0;
 }

@@ -81,7 +81,7 @@ DAMAGES = {
     "truncated": truncate,
     "no stream": lambda image: image.GetFieldData().RemoveArray("ProgIso.ZFP.Stream"),
     "no rate": lambda image: image.GetFieldData().RemoveArray("ProgIso.ZFP.BlockBits"),
-    "newer version": replace("Version", [3]),
+    "newer version": replace("Version", [4]),
     "negative bits": replace("BlockBits", [-8]),
     "too few bits": replace("BlockBits", [8]),
     "too many bits": replace("BlockBits", [1 << 30]),

@@ -17,7 +17,6 @@ from helpers.holes import (
     ball,
     blank,
     fewer,
-    nan_samples,
     speckles,
 )
 from helpers.images import (
@@ -76,12 +75,6 @@ def check_flags(data, hidden, flag):
     assert (flags is not None) == hidden.any()
     if flags:
         assert np.array_equal(vtk_to_numpy(flags).reshape(hidden.shape), np.where(hidden, flag, 0))
-
-
-def test_the_version_tells():
-    """Readers older than masks refuse a volume that has one, and take all others."""
-    assert metadata(progiso.compress(make_image(noise(SHAPE))), "Version")[0] == 1
-    assert metadata(nan_samples()[0], "Version")[0] == 2
 
 
 def test_hidden_values_cost_nothing():

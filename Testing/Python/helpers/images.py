@@ -2,6 +2,7 @@
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkIntArray
 
 import progiso
 from progiso.geometry import samples_of
@@ -22,6 +23,18 @@ METADATA = ("Version", "BlockBits", "Dimensions", "Range", "ScalarType", "Compon
 def metadata(compressed, name):
     """Return one of a compressed volume's metadata arrays as numbers."""
     return vtk_to_numpy(compressed.GetFieldData().GetAbstractArray(PREFIX + name))
+
+
+def without_checksums(compressed):
+    """Make of a compressed volume, in place, one of version 2 of the format; return it."""
+    fields = compressed.GetFieldData()
+    for name in ("PageChecksums", "MetadataChecksum"):
+        fields.RemoveArray(PREFIX + name)
+    version = vtkIntArray()
+    version.SetName(PREFIX + "Version")
+    version.InsertNextValue(2)
+    fields.AddArray(version)
+    return compressed
 
 
 def stream_of(compressed):

@@ -11,7 +11,15 @@ from vtkmodules.vtkCommonCore import vtkLookupTable
 
 import progiso
 from helpers.decoding import check_decoding, small_window
-from helpers.images import PREFIX, blobs, make_image, metadata, noise, reference_values
+from helpers.images import (
+    PREFIX,
+    blobs,
+    make_image,
+    metadata,
+    noise,
+    reference_values,
+    without_checksums,
+)
 from helpers.messages import vtk_messages
 from helpers.scenes import CACHED, Scene, least_budget
 from progiso.oracle import zfp_reference
@@ -167,7 +175,7 @@ def test_lying_range(low, high):
     """The range of values is for users; nothing is left out by it."""
     image = progiso.compress(make_image(noise((12, 12, 12))), rate=8)
     expected = shows(image, [1.0], **CACHED)
-    metadata(image, "Range")[:] = low, high
+    metadata(without_checksums(image), "Range")[:] = low, high
     assert shows(image, [1.0], **CACHED) == expected
 
 
