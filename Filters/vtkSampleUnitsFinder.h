@@ -47,8 +47,7 @@ public:
    * units are settled, see IsSettled(). An error if there is no such component, or `hidden` has
    * another number of values.
    */
-  bool AddSamples(
-    vtkDataArray* samples, int component = 0, vtkUnsignedCharArray* hidden = nullptr);
+  bool AddSamples(vtkDataArray* samples, int component = 0, vtkUnsignedCharArray* hidden = nullptr);
 
   /**
    * Whether further samples cannot change the units: always after the first array of a type of at

@@ -38,15 +38,26 @@ class Format(NamedTuple):
 _VTK = Format("vtk_files", "open_vtk", "VTK")
 _ZFP = Format("zfp", "open_zfp", "zfp")
 _RAW = Format("raw", "open_raw", "raw samples")
+_LEGACY = Format("legacy", "open_legacy", "medical images")
 
 #: Formats by suffix, in lower case; the longest that fits is taken.
 FORMATS: dict[str, Format] = {
     ".vti": _VTK,
     ".pvti": _VTK,
     ".vtk": _VTK,
+    ".vtkhdf": _VTK,
+    ".mha": _LEGACY,
+    ".mhd": _LEGACY,
+    ".nrrd": _LEGACY,
+    ".nhdr": _LEGACY,
+    ".nii": _LEGACY,
+    ".nii.gz": _LEGACY,
     ".zfp": _ZFP,
     ".raw": _RAW,
 }
+
+#: What reads a file of another suffix.
+OTHER = Format("legacy", "open_other", "other images")
 
 #: What reads a folder that has none of the suffixes above.
 FOLDER = Format("folders", "open_folder", "folders of DICOM files or numbered slices")
@@ -74,12 +85,13 @@ def open_source(path: FilePath, selection: Selection | None = None) -> Source:
     file, selection = _split(path, selection or Selection())
     if not file.exists():
         raise FileNotFoundError(f"there is no file '{file}'")
-    found = format_of(file)
-    if found is None:
-        raise ValueError(f"do not know how to read '{file}' (known: {', '.join(FORMATS)})")
-    opener = opener_of(found, file)
+    opener = opener_of(format_of(file), file)
     with reading(file), header_warnings(file):
-        return opener(file, selection)
+        source = opener(file, selection)
+        if selection.space is not None:
+            geometry = source.about.geometry.in_space(selection.space)
+            source.about = replace(source.about, geometry=geometry)
+        return source
 
 
 def opener_of(kind: Format, path: Path) -> Callable[[Path, Selection], Source]:
@@ -96,12 +108,12 @@ def opener_of(kind: Format, path: Path) -> Callable[[Path, Selection], Source]:
     return opener
 
 
-def format_of(path: Path) -> Format | None:
-    """Return the format of a file or folder by its name, or None where it is unknown."""
+def format_of(path: Path) -> Format:
+    """Return the format of a file or folder by its name."""
     suffix = suffix_of(path)
     if suffix in FORMATS:
         return FORMATS[suffix]
-    return FOLDER if path.is_dir() else None
+    return FOLDER if path.is_dir() else OTHER
 
 
 def suffix_of(path: FilePath) -> str:

@@ -13,8 +13,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from .._typing import Array, Dimensions, FilePath
-from ..geometry import image_from_array
-from .slab_files import SlabFile, opened_at
+from .source import Description, Region, Selection, Source
 
 TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64")
 
@@ -71,21 +70,32 @@ def parse_raw_name(path: FilePath) -> tuple[str, Dimensions, np.dtype[Any]]:
     return match["name"], dimensions, np.dtype(match["type"]).newbyteorder("<")
 
 
-def read_raw(path: FilePath) -> vtkImageData:
-    """Open a raw volume as an image whose scalars are a memory map of the file.
+class RawSource(Source):
+    """Samples without a header: a memory map, so that pages are read when they are touched."""
 
-    Pages are read when they are touched, so volumes larger than main memory open at once.
-    The scalars must not be written to.
+    concurrent = True
 
-    Parameters
-    ----------
-    path : str or os.PathLike
-        A file named ``name_WxHxD_type.raw``, little-endian, x fastest, no header.
+    def __init__(self, path: Path, about: Description, stored: np.dtype[Any]) -> None:
+        super().__init__(about)
+        self._path, self._stored = path, stored
 
-    Returns
-    -------
-    vtkmodules.vtkCommonDataModel.vtkImageData
-        Unit spacing, origin zero, one point array named after the file.
+    def _read(self, region: Region) -> Array:
+        z, *rows_and_columns = region
+        inner = self.shape[1:] + ((self.about.components,) if self.about.components > 1 else ())
+        # a map of these slices alone: the pages of a larger one would count as the process's memory
+        slices: Array = np.memmap(
+            self._path,
+            dtype=self._stored,
+            mode="r",
+            offset=z.start * int(np.prod(inner, dtype=object)) * self._stored.itemsize,
+            shape=(z.stop - z.start, *inner),
+        )
+        found = slices[(slice(None), *rows_and_columns)]
+        return found.astype(self.dtype, copy=False)  # a big-endian machine has to swap
+
+
+def open_raw(path: Path, _selection: Selection) -> Source:
+    """Open a raw volume, little-endian, x fastest; its array is called by the file's name.
 
     Raises
     ------
@@ -93,23 +103,10 @@ def read_raw(path: FilePath) -> vtkImageData:
         When the name does not follow the convention or the size does not fit it.
     """
     name, dimensions, dtype = _checked_name(path)
-    values: Array = np.memmap(path, dtype=dtype, mode="r")
-    if not values.dtype.isnative:  # a big-endian machine has to swap, hence to copy
-        values = values.astype(dtype.newbyteorder("="))
-    return image_from_array(values, dimensions, name=name)
-
-
-def raw_slabs(path: FilePath) -> SlabFile:
-    """Open a raw volume to be read some slices at a time; errors as in `read_raw`.
-
-    Returns
-    -------
-    SlabFile
-    """
-    name, dimensions, dtype = _checked_name(path)
-    return SlabFile(
-        Path(path), name, dimensions, dtype, open=opened_at(path), place=lambda image: None
+    about = Description(
+        what=str(path), shape=dimensions[::-1], dtype=dtype.newbyteorder("="), name=name
     )
+    return RawSource(path, about, dtype)
 
 
 def _checked_name(path: FilePath) -> tuple[str, Dimensions, np.dtype[Any]]:

@@ -7,14 +7,14 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar, TypeAlias
+from typing import Any, ClassVar, TypeAlias, TypedDict
 
 import numpy as np
 import numpy.typing as npt
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
-from .._typing import Array, Dimensions
-from ..geometry import image_from_array, set_axes
+from .._typing import Array, Dimensions, Progress
+from ..geometry import hide_points, image_from_array, set_axes
 from .errors import reading
 
 #: Part of a volume: slices of samples along z, y and x, without steps.
@@ -113,6 +113,18 @@ class Selection:
     rate: float | None = None
 
 
+class SelectionKeywords(TypedDict, total=False):
+    """Keywords of `Selection` but for those of ``.zfp`` files."""
+
+    array: str | None
+    component: int | None
+    channel: int | str | None
+    time: int | None
+    series: int | str | None
+    level: int | None
+    space: str | None
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Description:
     """What a header tells about a volume.
@@ -190,6 +202,12 @@ class Source(ABC):
 
     #: Whether `_read` may run in several threads at once; otherwise one after the other.
     concurrent: ClassVar[bool] = False
+
+    #: Whether `image` gives more than the samples, so that what works on images has to have it.
+    more_than_samples: bool = False
+
+    #: VTK's number of the samples' type, where NumPy's type has several.
+    vtk_type: int | None = None
 
     def __init__(self, about: Description) -> None:
         if min(about.shape) < 1 or about.components < 1:
@@ -281,24 +299,30 @@ class Source(ABC):
         with reading(self.about.what), self._lock:
             return self._hidden(inside)
 
-    def slabs(self) -> Iterator[tuple[Array, npt.NDArray[np.bool_] | None]]:
+    def slabs(self) -> Iterator[Array]:
         """Read everything some slices at a time, from the first to the last.
 
         Yields
         ------
-        samples : numpy.ndarray
-            The next slices, a multiple of 4 of them unless they are the last, as by `read`.
-        hidden : numpy.ndarray of bool or None
-            Which of them have no value, as by `hidden`.
+        numpy.ndarray or numpy.ma.MaskedArray
+            The next slices as by `read`, a multiple of 4 of them unless they are the last; masked
+            where samples have no value.
         """
         depth = self.shape[0]
         step = self._slices_at_a_time()
         for first in range(0, depth, step):
             part = (slice(first, min(first + step, depth)), slice(None), slice(None))
-            yield self.read(part), self.hidden(part)
+            samples, hidden = self.read(part), self.hidden(part)
+            if hidden is not None and self.about.components > 1:
+                hidden = np.broadcast_to(hidden[..., np.newaxis], samples.shape)
+            yield samples if hidden is None else np.ma.MaskedArray(samples, hidden)
 
-    def image(self) -> vtkImageData:
-        """Read everything as an image whose active point scalars are the samples."""
+    def image(self, progress: Progress | None = None) -> vtkImageData:
+        """Read everything as an image whose active point scalars are the samples.
+
+        Formats that hold more, VTK's own, give all of it: other arrays, data of cells, or a
+        compressed volume as it is.
+        """
         about = self.about
         image = image_from_array(
             np.ascontiguousarray(self.read()).reshape(-1),
@@ -306,11 +330,17 @@ class Source(ABC):
             name=about.name,
             components=about.components,
         )
-        about.geometry.place(image)
+        self.place(image)
         hidden = self.hidden()
         if hidden is not None and hidden.any():
             hide_points(image, hidden)
+        if progress is not None:
+            progress(1.0)
         return image
+
+    def place(self, image: vtkImageData) -> None:
+        """Give an image of the same dimensions the place of the samples in the world."""
+        self.about.geometry.place(image)
 
     def close(self) -> None:
         """Close what the source has opened; reading opens it again."""
@@ -350,22 +380,3 @@ class Source(ABC):
             raise IndexError(f"{region} is no region of {self.shape} samples")
         z, y, x = (slice(start, stop) for start, stop, _ in parts)
         return z, y, x
-
-
-def hide_points(image: vtkImageData, hidden: npt.NDArray[np.bool_]) -> None:
-    """Mark points as hidden in an image's ghost array.
-
-    Parameters
-    ----------
-    image : vtkmodules.vtkCommonDataModel.vtkImageData
-        Gets a point array of VTK's name for ghosts.
-    hidden : numpy.ndarray of bool, shape (depth, height, width)
-        True where a point has no value.
-    """
-    from vtkmodules.util.numpy_support import numpy_to_vtk
-    from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
-
-    flags = hidden.astype(np.uint8).reshape(-1) * np.uint8(vtkDataSetAttributes.HIDDENPOINT)
-    ghosts = numpy_to_vtk(flags, deep=True)
-    ghosts.SetName(vtkDataSetAttributes.GhostArrayName())
-    image.GetPointData().AddArray(ghosts)

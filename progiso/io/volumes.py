@@ -2,68 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import warnings
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkDataArray
+from vtkmodules.vtkCommonDataModel import vtkImageData
 
-from .._typing import FilePath, ImageLike, Progress
+from .._typing import Array, FilePath, ImageLike, Progress
 from ..compression import checked_rate, compress_with, is_compressed
 from ..geometry import as_image
 from ..options import CompressionKeywords, CompressionOptions
 from .files import atomic_path, check_output
-from .metaimage import metaimage_slabs, read_metaimage, write_metaimage
-from .nifti import nifti_slabs, read_nifti, write_nifti
-from .nrrd import nrrd_slabs, read_nrrd
-from .others import read_other
-from .raw import raw_slabs, read_raw, write_raw
-from .slab_files import SlabFile
-from .slabs import build
-from .vtk_files import VTK_READERS, read_with, write_vti
-from .zfp import read_zfp, write_zfp
+from .formats import open_source, suffix_of
+from .metaimage import write_metaimage
+from .nifti import write_nifti
+from .raw import write_raw
+from .slabs import build, units_of
+from .source import Selection, Source
+from .vtk_files import write_vti
+from .zfp import write_zfp
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
+    from .source import SelectionKeywords
 
-class Format(NamedTuple):
-    """What a module of this package does with files of one suffix.
-
-    Attributes
-    ----------
-    read : callable
-        Returns the image in a file.
-    slabs : callable, optional
-        Opens a file to be read some slices at a time; returns None where its samples do not allow
-        it.
-    write : callable, optional
-        Writes an image with active point scalars.
-    """
-
-    read: Callable[[Path], vtkImageData]
-    slabs: Callable[[Path], SlabFile | None] | None = None
-    write: Callable[[vtkImageData, Path], None] | None = None
-
-
-_METAIMAGE = Format(read_metaimage, metaimage_slabs, write_metaimage)
-_NRRD = Format(read_nrrd, nrrd_slabs)
-_NIFTI = Format(read_nifti, nifti_slabs, write_nifti)
-
-#: Formats for plain images by suffix; VTK's own and zfp's, which also hold compressed volumes, are
-#: handled apart.
-FORMATS = {
-    ".mha": _METAIMAGE,
-    ".mhd": _METAIMAGE._replace(write=None),
-    ".nrrd": _NRRD,
-    ".nhdr": _NRRD,
-    ".nii": _NIFTI,
-    ".nii.gz": _NIFTI,
-    ".raw": Format(read_raw, raw_slabs, write_raw),
+#: Writers of plain images with active point scalars; VTK's own and zfp's formats, which also hold
+#: compressed volumes, are handled apart.
+_WRITERS = {
+    ".mha": write_metaimage,
+    ".nii": write_nifti,
+    ".nii.gz": write_nifti,
+    ".raw": write_raw,
 }
-
-_WRITERS = {suffix: kind.write for suffix, kind in FORMATS.items() if kind.write is not None}
 
 #: Suffixes of files that hold compressed volumes, and plain ones.
 COMPRESSED_SUFFIXES = (".vti", ".zfp")
@@ -76,20 +51,24 @@ def read(
     dimensions: Sequence[int] | None = None,
     rate: float | None = None,
     progress: Progress | None = None,
+    **selection: Unpack[SelectionKeywords],
 ) -> vtkImageData:
-    """Read a volume from a file.
+    """Read a volume from a file or folder.
 
     Parameters
     ----------
     path : str or os.PathLike
-        By its suffix: ``.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .nii.gz .zfp``, ``.raw`` named
-        ``name_WxHxD_type.raw``, other image formats that VTK reads, and those that nibabel reads.
+        Of a format in ``docs/formats.md``, by its suffix. ``file.h5:/group/array`` names an array
+        inside a file. Raw files are named ``name_WxHxD_type.raw``.
     dimensions : sequence of int, optional
         Samples along x, y and z of a ``.zfp`` file without header.
     rate : float, optional
         Bits per sample of a ``.zfp`` file without header.
     progress : callable, optional
         Called with the fraction done, from 0 to 1, while VTK reads.
+    **selection
+        ``array``, ``component``, ``channel``, ``time``, ``series``, ``level`` and ``space``: what
+        of the file is wanted, see `progiso.io.Selection`.
 
     Returns
     -------
@@ -103,7 +82,12 @@ def read(
     ValueError, RuntimeError
         When the file is damaged, of an unknown kind, or no image; the message names the file.
     ImportError
-        When only nibabel can read it, and it is not installed.
+        When the format needs a package that is not installed; the message names it.
+
+    Warns
+    -----
+    UserWarning
+        Where the file holds more than one volume, and what was chosen.
 
     Examples
     --------
@@ -112,32 +96,30 @@ def read(
     >>> progiso.read(fetch("sphere", size=16)).GetDimensions()
     (16, 16, 16)
     """
-    path = _existing(path)
-    suffix = suffix_of(path)
-    if suffix == ".zfp":
-        found = read_zfp(path, dimensions, rate)
-    elif suffix in VTK_READERS:
-        found = read_with(VTK_READERS[suffix](), path, progress)
-    elif suffix in FORMATS:
-        found = FORMATS[suffix].read(path)
-    else:
-        found = read_other(path, (*VTK_READERS, *FORMATS, ".zfp"))
-    return _checked(found, path)
+    chosen = Selection(dimensions=dimensions, rate=rate, **selection)
+    with open_source(path, chosen) as source:
+        _tell_notes(source)
+        return source.image(progress)
 
 
-def compress_file(path: FilePath, **options: Unpack[CompressionKeywords]) -> vtkImageData:
-    """Compress a volume in a file, some slices at a time where the file allows it.
+def compress_file(
+    path: FilePath,
+    *,
+    selection: Selection | None = None,
+    **options: Unpack[CompressionKeywords],
+) -> vtkImageData:
+    """Compress a volume in a file, some slices at a time where the format allows it.
 
-    The result is bit for bit that of `compress` on what `read` returns. ``.raw``, ``.nrrd``,
-    ``.nhdr``, ``.nii``, ``.nii.gz``, ``.mha`` and ``.mhd`` are never in memory as a whole, whether
-    their samples are compressed or not: memory holds the result and some tens of MiB, or 4 slices
-    where these are larger. Other formats are read as a whole, as are these when their samples are
-    text, lie in several files, or are compressed and begin with the last slice.
+    The result is bit for bit that of `compress` on what `read` returns. Memory holds the result and
+    some tens of MiB, or 4 slices, or a layer of the file's chunks where these are larger; the page
+    on formats (``docs/formats.md``) tells which formats are read as a whole.
 
     Parameters
     ----------
     path : str or os.PathLike
         Of any kind that `read` knows.
+    selection : progiso.io.Selection, optional
+        What of the file is wanted, where it holds more than one volume.
     **options
         ``rate``, ``array``, ``component``, ``mask_nan``, ``threads`` and ``progress`` as in
         `compress`.
@@ -164,56 +146,56 @@ def compress_file(path: FilePath, **options: Unpack[CompressionKeywords]) -> vtk
     >>> progiso.describe(volume)["samples"]
     [32, 32, 32]
     """
-    path = _existing(path)
     chosen = CompressionOptions(**options)
     checked_rate(chosen.rate)
-    kind = FORMATS.get(suffix_of(path))
-    source = kind.slabs(path) if kind is not None and kind.slabs is not None else None
-    if source is None:
-        image = read(path, progress=_half(chosen.progress, 0))
-        return compress_with(image, replace(chosen, progress=_half(chosen.progress, 1)))
-    if chosen.array not in (None, source.name):
-        raise ValueError(f"the image has no array {chosen.array!r}; it has: {source.name!r}")
-    volume = build(source.vtk_arrays(), source.dimensions, source.name, chosen)
+    selection = selection or Selection()
+    if chosen.array is not None:
+        selection = replace(selection, array=chosen.array)
+    with open_source(path, selection) as source:
+        _tell_notes(source)
+        return compress_source(source, chosen)
+
+
+def compress_source(source: Source, options: CompressionOptions) -> vtkImageData:
+    """Compress a source, some slices at a time unless it holds more than samples.
+
+    The samples are read twice where float32 may not hold them: the first time to choose units.
+    """
+    if source.more_than_samples:
+        image = source.image(_half(options.progress, 0))
+        return compress_with(image, replace(options, progress=_half(options.progress, 1)))
+    about = source.about
+    if options.array not in (None, about.name):
+        raise ValueError(f"the image has no array {options.array!r}; it has: {about.name!r}")
+    count = about.components
+    units = units_of(_slabs(source), component=options.component, components=count)
+    volume = build(
+        _slabs(source), about.dimensions, about.name, options, units=units, components=count
+    )
     source.place(volume)
     return volume
 
 
-def _existing(path: FilePath) -> Path:
-    """Return the path of a file that is there, or raise."""
-    path = Path(path)
-    if path.is_dir():
-        raise IsADirectoryError(f"'{path}' is a folder: name a file")
-    if not path.is_file():
-        raise FileNotFoundError(f"there is no file '{path}'")
-    return path
+def _slabs(source: Source) -> Iterator[Array | vtkDataArray]:
+    """Yield a source's slabs, as VTK arrays where NumPy's type does not tell VTK's."""
+    components = source.about.components
+    for slab in source.slabs():
+        if source.vtk_type is None:
+            yield slab
+        else:
+            flat = np.ascontiguousarray(slab).reshape(-1, components)
+            yield numpy_to_vtk(flat if components > 1 else flat[:, 0], array_type=source.vtk_type)
+
+
+def _tell_notes(source: Source) -> None:
+    """Warn of what was chosen by default."""
+    for note in source.about.notes:
+        warnings.warn(f"'{source.about.what}': {note}", stacklevel=3)
 
 
 def _half(progress: Progress | None, number: int) -> Progress | None:
     """Return the progress of the first (0) or the second half (1) of the work."""
     return None if progress is None else lambda fraction: progress((number + fraction) / 2)
-
-
-def suffix_of(path: FilePath) -> str:
-    """Return the lower-case suffix of a path; ``.nii.gz`` counts as one.
-
-    Examples
-    --------
-    >>> suffix_of("brain.NII.gz")
-    '.nii.gz'
-    """
-    name = Path(path).name.lower()
-    return ".nii.gz" if name.endswith(".nii.gz") else Path(name).suffix
-
-
-def _checked(image: vtkDataObject | None, path: Path) -> vtkImageData:
-    """Return an image that is not empty, or raise."""
-    if not isinstance(image, vtkImageData):
-        kind = "nothing" if image is None else f"a {image.GetClassName()}"
-        raise ValueError(f"'{path}' holds {kind}, not an image (vtkImageData)")
-    if image.GetNumberOfPoints() == 0:
-        raise ValueError(f"'{path}' holds an empty image")
-    return image
 
 
 def save(

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkDataArray
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSetAttributes, vtkImageData
+from vtkmodules.vtkIOHDF import vtkHDFReader
 from vtkmodules.vtkIOLegacy import vtkDataSetReader
 from vtkmodules.vtkIOXML import (
     vtkXMLImageDataReader,
@@ -13,16 +17,125 @@ from vtkmodules.vtkIOXML import (
     vtkXMLPImageDataReader,
 )
 
-from .._typing import Progress
+from .._typing import Array, Progress
 from .._vtk import observe_progress, vtk_errors
 from ..compression import is_compressed
+from ..geometry import GHOSTS
+from .images import ImageSource, checked_image, geometry_of, place_as
+from .source import Description, Region, Selection, Source
 
-#: VTK's reader by suffix.
-VTK_READERS = {
+_POINTS = 0  # vtkDataObject::FieldAssociations
+
+#: VTK's readers that read by extent, by suffix.
+_BY_EXTENT: dict[str, Callable[[], Any]] = {
     ".vti": vtkXMLImageDataReader,
     ".pvti": vtkXMLPImageDataReader,
-    ".vtk": vtkDataSetReader,
+    ".vtkhdf": vtkHDFReader,
 }
+
+
+def open_vtk(path: Path, selection: Selection) -> Source:
+    """Open one of VTK's own image files.
+
+    ``.vti``, ``.pvti`` and ``.vtkhdf`` are read by extent where an array of points is asked for, or
+    active, and nothing is hidden; what else they hold comes with the whole image. ``.vtk`` is read
+    whole, as VTK does.
+    """
+    make = _BY_EXTENT.get(path.suffix.lower())
+    if make is None:
+        return ImageSource(path, read_with(vtkDataSetReader(), path), selection.array)
+    array = _plain_array(path, make(), selection.array)
+    if array is None:
+        return ImageSource(path, read_with(make(), path), selection.array)
+    return ExtentSource(path, make, array)
+
+
+def _plain_array(path: Path, reader: Any, wanted: str | None) -> str | None:
+    """Return the array of points that can be read by extent, or None if all has to be read."""
+    with vtk_errors(f"cannot read '{path}'"):
+        reader.SetFileName(str(path))
+        reader.UpdateInformation()
+    if reader.GetOutputDataObject(0) is None or not reader.GetOutputDataObject(0).IsA(
+        "vtkImageData"
+    ):
+        return None
+    points, cells = reader.GetPointDataArraySelection(), reader.GetCellDataArraySelection()
+    names = {points.GetArrayName(i) for i in range(points.GetNumberOfArrays())}
+    hidden = GHOSTS in names or cells.ArrayExists(GHOSTS)
+    active = vtkDataObject.GetActiveFieldInformation(
+        reader.GetOutputInformation(0), _POINTS, vtkDataSetAttributes.SCALARS
+    )
+    name = wanted or (active.Get(vtkDataObject.FIELD_NAME()) if active is not None else None)
+    return None if hidden or name not in names else name
+
+
+class ExtentSource(Source):
+    """An array of points in a file that VTK reads by extent."""
+
+    def __init__(self, path: Path, make: Callable[[], Any], array: str) -> None:
+        self._path, self._make, self._array = path, make, array
+        with vtk_errors(f"cannot read '{path}'"):
+            self._frame = self._read_frame()
+        width, height, depth = self._frame.GetDimensions()
+        first = self._frame.GetExtent()[::2]
+        one = self._read_extent([n for n in first for _ in range(2)])
+        self.vtk_type = one.GetDataType()
+        super().__init__(
+            Description(
+                what=str(path),
+                shape=(depth, height, width),
+                dtype=vtk_to_numpy(one).dtype.newbyteorder("="),
+                components=one.GetNumberOfComponents(),
+                name=array,
+                geometry=geometry_of(self._frame),
+            )
+        )
+
+    def _read_frame(self) -> vtkImageData:
+        """Read all but the arrays of points and cells."""
+        reader = self._make()
+        reader.SetFileName(str(self._path))
+        reader.UpdateInformation()
+        reader.GetPointDataArraySelection().DisableAllArrays()
+        reader.GetCellDataArraySelection().DisableAllArrays()
+        reader.Update()
+        return checked_image(self._path, reader.GetOutputDataObject(0))
+
+    def _open(self) -> Any:
+        reader = self._make()
+        reader.SetFileName(str(self._path))
+        reader.UpdateInformation()
+        reader.GetCellDataArraySelection().DisableAllArrays()
+        points = reader.GetPointDataArraySelection()
+        points.DisableAllArrays()
+        points.EnableArray(self._array)
+        return reader
+
+    def _read_extent(self, extent: Sequence[int]) -> vtkDataArray:
+        reader = self._open()
+        with vtk_errors(f"cannot read '{self._path}'"):
+            reader.UpdateExtent(extent)
+        image = reader.GetOutputDataObject(0)
+        array = image.GetPointData().GetArray(self._array)
+        if array is None or tuple(image.GetExtent()) != tuple(extent):
+            raise ValueError(f"cannot read {list(extent)} of '{self._path}'")
+        return array
+
+    def _read(self, region: Region) -> Array:
+        starts = self._frame.GetExtent()[::2]
+        extent = [
+            start + end
+            for start, part in zip(starts, reversed(region))
+            for end in (part.start, part.stop - 1)
+        ]
+        values = vtk_to_numpy(self._read_extent(extent))
+        return values.reshape(*(part.stop - part.start for part in region), *values.shape[1:])
+
+    def image(self, progress: Progress | None = None) -> vtkImageData:
+        return checked_image(self._path, read_with(self._make(), self._path, progress))
+
+    def place(self, image: vtkImageData) -> None:
+        place_as(image, self._frame)
 
 
 def read_with(reader: Any, path: Path, progress: Progress | None = None) -> vtkDataObject:

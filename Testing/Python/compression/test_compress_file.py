@@ -12,7 +12,7 @@ import progiso
 import progiso.io.volumes
 from helpers.images import blobs, check_same, make_image
 from helpers.programs import compress_command
-from progiso.io import slab_files, vtk_files, zfp
+from progiso.io import slab_files, source, vtk_files, zfp
 
 SHAPE = (13, 7, 9)  # slices, rows, columns
 
@@ -180,6 +180,7 @@ def test_equals_reading_whole(case, tmp_path, monkeypatch):
     monkeypatch.setattr(progiso.io.volumes, "read", None)
     for slab_bytes in (1, 9 * 7 * 2 * 8, 2**25):
         monkeypatch.setattr(slab_files, "_SLAB_BYTES", slab_bytes)
+        monkeypatch.setattr(source, "_SLAB_BYTES", slab_bytes)
         volume = progiso.compress_file(path, rate=6, component=component)
         check_same(volume, expected)
         assert volume.GetExtent() == image.GetExtent()
@@ -207,7 +208,7 @@ def test_other_files_are_read_whole(suffix, tmp_path):
 
 
 def test_progress_rises(tmp_path, monkeypatch):
-    monkeypatch.setattr(slab_files, "_SLAB_BYTES", 1)
+    monkeypatch.setattr(source, "_SLAB_BYTES", 1)
     seen = []
     progiso.compress_file(write_raw(tmp_path, "int16"), progress=seen.append)
     assert seen == [4 / 13, 8 / 13, 12 / 13, 1]
