@@ -106,9 +106,23 @@ def image_data(image: Any) -> vtkImageData:
         Naming what was passed instead.
     """
     if not getattr(image, "IsA", lambda _: False)("vtkImageData"):
-        hint = ": progiso.read makes an image of a file" if isinstance(image, (str, Path)) else ""
-        raise TypeError(f"expected a vtkImageData, got {type(image).__name__}{hint}")
+        raise TypeError(f"expected a vtkImageData, got {type(image).__name__}{_hint(image)}")
     return image
+
+
+def _hint(found: Any) -> str:
+    """Tell what to do about something that is no image."""
+    if isinstance(found, (str, Path)):
+        return ": progiso.read makes an image of a file"
+    is_a = getattr(found, "IsA", lambda _: False)
+    if is_a("vtkCompositeDataSet"):
+        return ": take one of its blocks"
+    if is_a("vtkDataSet"):
+        return (
+            ": resample it to an image (ParaView's 'Resample To Image', vtkResampleToImage, or "
+            "pyvista.ImageData(...).sample(mesh))"
+        )
+    return ""
 
 
 def observe_progress(algorithm: vtkAlgorithm, progress: Progress | None) -> None:

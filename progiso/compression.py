@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 from vtkmodules.vtkCommonCore import reference, vtkDataArray
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
@@ -22,6 +23,7 @@ def compress(
     rate: float = 8.0,
     array: str | None = None,
     component: int = 0,
+    axes: str | None = None,
     mask_nan: bool = False,
     threads: int = 0,
     progress: Progress | None = None,
@@ -33,9 +35,11 @@ def compress(
 
     Parameters
     ----------
-    image : vtkmodules.vtkCommonDataModel.vtkImageData or numpy.ndarray
+    image : vtkmodules.vtkCommonDataModel.vtkImageData, numpy.ndarray, or like one
         At least 2 samples along every axis. An array is indexed [x, y, z], as pyvista's ``wrap``
-        takes it, and has unit spacing; pass ``array.T`` where z comes first.
+        takes it, and has unit spacing. Arrays of dask, zarr and h5py are read some slices at a
+        time; an ``xarray.DataArray`` lies where its coordinates say, an image of SimpleITK or
+        nibabel where it says itself.
     rate : float, default: 8
         Bits per sample, in (0, 32]; zfp rounds it to whole bits per block of 64 samples, at
         least 9 of them.
@@ -44,6 +48,9 @@ def compress(
         point array, else the active cell scalars, else the first cell array.
     component : int, default: 0
         Component of that array.
+    axes : str, optional
+        Order of an array's dimensions: "zyx" where slices come first; by default "xyz", or what
+        the names of an xarray's dimensions say.
     mask_nan : bool, default: False
         Whether NaN and infinite samples are hidden, too; otherwise they are an error.
     threads : int, default: 0
@@ -79,6 +86,7 @@ def compress(
         rate=rate,
         array=array,
         component=component,
+        axes=axes,
         mask_nan=mask_nan,
         threads=threads,
         progress=progress,
@@ -88,7 +96,15 @@ def compress(
 
 def compress_with(image: ImageLike, options: CompressionOptions) -> vtkImageData:
     """Compress an image; options, result and errors as in `compress`."""
-    image = as_image(image)
+    if not isinstance(image, (vtkImageData, np.ndarray)):
+        from .io.arrays import source_of  # which needs this module
+        from .io.volumes import compress_source
+
+        source = source_of(image, options.axes)
+        if source is not None:
+            source.tell_notes(3)
+            return compress_source(source, options)
+    image = as_image(image, options.axes)
     if is_compressed(image):
         raise RuntimeError("cannot compress: the image is a compressed volume already")
     compressor = vtkImageZFPCompress()
@@ -206,9 +222,9 @@ def as_compressed(image: ImageLike, options: CompressionOptions) -> vtkImageData
     ValueError
         When the image is a compressed volume of another array than the one asked for.
     """
-    image = as_image(image)
     if not is_compressed(image):
         return compress_with(image, options)
+    image = as_image(image)
     check_array(image, options.array)
     return image
 

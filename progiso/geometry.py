@@ -81,15 +81,18 @@ def samples_of(image: vtkImageData) -> Array:
     return vtk_to_numpy(points or image.GetCellData().GetScalars()).reshape(size[::-1])
 
 
-def as_image(volume: ImageLike) -> vtkImageData:
+def as_image(volume: ImageLike, axes: str | None = None) -> vtkImageData:
     """Make an image of an array; an image is returned as it is.
 
     Parameters
     ----------
-    volume : vtkmodules.vtkCommonDataModel.vtkImageData or numpy.ndarray
+    volume : vtkmodules.vtkCommonDataModel.vtkImageData, numpy.ndarray, or like one
         An image, or the samples of one: a three-dimensional array that is indexed [x, y, z], as
-        pyvista's ``wrap`` takes it. Where z comes first, as in a stack of slices, pass ``array.T``.
-        The masked samples of a `numpy.ma.MaskedArray` become hidden points.
+        pyvista's ``wrap`` takes it. The masked samples of a `numpy.ma.MaskedArray` become hidden
+        points. Or what `progiso.io.source_of` takes: arrays of dask, zarr, h5py and xarray, images
+        of SimpleITK and nibabel.
+    axes : str, optional
+        Order of an array's dimensions, "zyx" where slices come first.
 
     Returns
     -------
@@ -101,6 +104,8 @@ def as_image(volume: ImageLike) -> vtkImageData:
     ------
     TypeError
         When it is neither, or the array has other dimensions or holds no real numbers.
+    ValueError
+        When `axes` is no order of x, y and z.
 
     Examples
     --------
@@ -108,8 +113,14 @@ def as_image(volume: ImageLike) -> vtkImageData:
     >>> as_image(np.zeros((4, 3, 2))).GetDimensions()
     (4, 3, 2)
     """
-    if not isinstance(volume, np.ndarray):
-        return image_data(volume)
+    if not isinstance(volume, np.ndarray) or axes not in (None, "xyz"):
+        from .io.arrays import source_of  # which needs this module
+
+        source = None if isinstance(volume, vtkImageData) else source_of(volume, axes)
+        if source is None:
+            return image_data(volume)
+        source.tell_notes()
+        return source.image()
     if volume.ndim != 3:
         raise TypeError(f"an array must have 3 dimensions, this one has {volume.ndim}")
     values, hidden = plain_samples(volume)

@@ -25,6 +25,7 @@ class CompressionOptions:
     rate: float = 8.0
     array: str | None = None
     component: int = 0
+    axes: str | None = None
     mask_nan: bool = False
     threads: int = 0
     progress: Progress | None = None
@@ -57,6 +58,7 @@ class EncodingKeywords(TypedDict, total=False):
 
     rate: float
     component: int
+    axes: str | None
     mask_nan: bool
     threads: int
     progress: Progress | None

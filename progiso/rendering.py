@@ -22,7 +22,6 @@ from ._vtk import vtk_errors
 from .appearance import as_list, is_color
 from .camera import Camera, orbit_camera, view_camera
 from .compression import as_compressed
-from .geometry import as_image
 from .io.files import atomic_path
 from .isosurface import style_isosurface
 from .options import CompressionKeywords, CompressionOptions, RenderOptions, SurfaceStyle
@@ -121,10 +120,9 @@ def render(
     width, height = _checked_size(size)
     if orbit is not None and camera is not None:
         raise ValueError("give either an orbit or a camera, not both")
-    image = as_image(image)
+    image = as_compressed(image, CompressionOptions(**compression))
     if orbit is not None:
         camera = orbit_camera(image, *orbit)
-    image = as_compressed(image, CompressionOptions(**compression))
     colors = [parse_color(each) for each in as_list(color, is_color)]
     prop = style_isosurface(
         image,

@@ -60,7 +60,8 @@ vtkTypeUInt32 AddValues(vtkTypeUInt32 sum, vtkAbstractArray* array)
     return sum;
   }
   auto* const numbers = vtkArrayDownCast<vtkDataArray>(array);
-  if (numbers && number > 0 && numbers->GetDataTypeSize() == 8 && numbers->HasStandardMemoryLayout())
+  if (numbers && number > 0 && numbers->GetDataTypeSize() == 8 &&
+    numbers->HasStandardMemoryLayout())
   {
     return Add(sum, numbers->GetVoidPointer(0), 8 * static_cast<std::size_t>(number));
   }
@@ -167,8 +168,9 @@ bool Checksums::IsKnownIntact(vtkUnsignedCharArray* stream, vtkTypeUInt32Array* 
     ? vtkTypeUInt64Array::SafeDownCast(stream->GetInformation()->Get(IntactKey()))
     : nullptr;
   const auto now = MakeStamp(stream, checksums);
-  return known && std::equal(now->GetPointer(0), now->GetPointer(0) + now->GetNumberOfValues(),
-                    known->GetPointer(0));
+  return known &&
+    std::equal(
+      now->GetPointer(0), now->GetPointer(0) + now->GetNumberOfValues(), known->GetPointer(0));
 }
 
 //------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from contextlib import nullcontext
@@ -264,7 +265,8 @@ class Source(ABC):
         Returns
         -------
         numpy.ndarray, shape (depth, height, width) or (depth, height, width, components)
-            In native byte order. It may be a view of a file: do not write to it.
+            In native byte order. It may be a view of a file: do not write to it. A masked array
+            where an array of that kind is read.
 
         Raises
         ------
@@ -324,14 +326,18 @@ class Source(ABC):
         compressed volume as it is.
         """
         about = self.about
+        samples = self.read()
         image = image_from_array(
-            np.ascontiguousarray(self.read()).reshape(-1),
+            np.ascontiguousarray(np.ma.getdata(samples)).reshape(-1),
             about.dimensions,
             name=about.name,
             components=about.components,
         )
         self.place(image)
         hidden = self.hidden()
+        if hidden is None and np.ma.is_masked(samples):
+            mask = np.ma.getmaskarray(samples).reshape(*self.shape, -1)
+            hidden = np.asarray(mask.any(axis=-1))
         if hidden is not None and hidden.any():
             hide_points(image, hidden)
         if progress is not None:
@@ -341,6 +347,11 @@ class Source(ABC):
     def place(self, image: vtkImageData) -> None:
         """Give an image of the same dimensions the place of the samples in the world."""
         self.about.geometry.place(image)
+
+    def tell_notes(self, depth: int = 2) -> None:
+        """Warn of what was chosen by default, as of the caller's caller (or `depth` above)."""
+        for note in self.about.notes:
+            warnings.warn(f"'{self.about.what}': {note}", stacklevel=depth + 1)
 
     def close(self) -> None:
         """Close what the source has opened; reading opens it again."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -98,7 +97,7 @@ def read(
     """
     chosen = Selection(dimensions=dimensions, rate=rate, **selection)
     with open_source(path, chosen) as source:
-        _tell_notes(source)
+        source.tell_notes()
         return source.image(progress)
 
 
@@ -152,7 +151,7 @@ def compress_file(
     if chosen.array is not None:
         selection = replace(selection, array=chosen.array)
     with open_source(path, selection) as source:
-        _tell_notes(source)
+        source.tell_notes()
         return compress_source(source, chosen)
 
 
@@ -185,12 +184,6 @@ def _slabs(source: Source) -> Iterator[Array | vtkDataArray]:
         else:
             flat = np.ascontiguousarray(slab).reshape(-1, components)
             yield numpy_to_vtk(flat if components > 1 else flat[:, 0], array_type=source.vtk_type)
-
-
-def _tell_notes(source: Source) -> None:
-    """Warn of what was chosen by default."""
-    for note in source.about.notes:
-        warnings.warn(f"'{source.about.what}': {note}", stacklevel=3)
 
 
 def _half(progress: Progress | None, number: int) -> Progress | None:

@@ -181,7 +181,5 @@ def test_every_producer_stores_checksums(tmp_path):
         progiso.compress_file(tmp_path / "a_9x9x9_float32.raw"),
         progiso.compress_slabs(iter([noise((9, 9, 9))]), (9, 9, 9)),
     ):
-        assert np.array_equal(
-            metadata(volume, "PageChecksums"), metadata(whole, "PageChecksums")
-        )
+        assert np.array_equal(metadata(volume, "PageChecksums"), metadata(whole, "PageChecksums"))
         assert metadata(volume, "Version")[0] == 3

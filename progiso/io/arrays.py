@@ -1,0 +1,196 @@
+"""Arrays in memory or read lazily, and other libraries' images, as sources."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .._typing import Array, Dimensions
+from ..geometry import plain_samples
+from .source import Description, Geometry, Region, Source
+
+#: Names of an xarray's dimensions by the axis that they mean; what is left is z.
+_NAMES = {"x": ("x", "lon", "longitude", "nx"), "y": ("y", "lat", "latitude", "ny")}
+
+#: Attributes of an xarray that tell what stands for no value, where it was not decoded.
+_FILLS = ("_FillValue", "missing_value", "nodata")
+
+#: How far the steps of a coordinate may differ from their mean, as part of it.
+_EVEN = 1e-3
+
+
+class ArraySource(Source):
+    """Anything with a shape, a type and slicing, of three dimensions.
+
+    Parameters
+    ----------
+    array : object
+        Is sliced region by region, and what comes is made a NumPy array.
+    axes : str
+        "xyz" or "zyx", or any other order of the three letters: the meaning of its dimensions.
+    fill : float, optional
+        Samples of this value are masked: they have none.
+    **about
+        Other fields of `Description`.
+
+    Raises
+    ------
+    TypeError
+        When it has other dimensions, or holds no real numbers.
+    """
+
+    def __init__(
+        self, array: Any, axes: str = "xyz", *, fill: float | None = None, **about: Any
+    ) -> None:
+        self._array, self._order = array, [axes.index(axis) for axis in "zyx"]
+        self._fill = fill
+        if len(array.shape) != 3:
+            raise TypeError(f"an array must have 3 dimensions, this one has {len(array.shape)}")
+        kind = plain_samples(np.empty(0, array.dtype))[0].dtype
+        about = {"what": type(array).__name__, "name": "values", **about}
+        depth, height, width = (int(array.shape[axis]) for axis in self._order)
+        super().__init__(
+            Description(shape=(depth, height, width), dtype=kind, chunks=self._chunks(), **about)
+        )
+
+    def _chunks(self) -> Dimensions | None:
+        """Return the chunks' shape along z, y and x, where the array tells of chunks."""
+        chunks = getattr(self._array, "chunks", None)
+        if not chunks or len(chunks) != 3:
+            return None
+        sizes = [int(c[0] if isinstance(c, Sequence) else c) for c in chunks]
+        depth, height, width = (sizes[axis] for axis in self._order)
+        return depth, height, width
+
+    def _read(self, region: Region) -> Array:
+        own = [slice(None)] * 3
+        for axis, part in zip(self._order, region):
+            own[axis] = part
+        found = self._array[tuple(own)]
+        found = found.data if _is_of(found, "xarray") else found
+        found = found.compute() if _is_of(found, "dask") else found  # np.asarray drops a mask
+        samples, hidden = plain_samples(found if np.ma.isMA(found) else np.asarray(found))
+        if self._fill is not None:
+            filled = samples == self._fill
+            hidden = filled if hidden is None else hidden | filled
+        samples = samples.transpose(self._order)
+        if hidden is None:
+            return samples
+        return np.ma.MaskedArray(samples, hidden.transpose(self._order))
+
+
+def source_of(volume: Any, axes: str | None = None) -> Source | None:
+    """Make a source of an array or of another library's image.
+
+    Parameters
+    ----------
+    volume : object
+        An array of NumPy, dask, zarr or h5py, an ``xarray.DataArray``, whose coordinates place it
+        where they are evenly spaced, or an image of SimpleITK or nibabel, which knows its place.
+    axes : str, optional
+        Order of the dimensions of an array: by default "xyz", as pyvista's ``wrap`` takes it, or
+        what the names of an xarray's dimensions say; "zyx" where slices come first.
+
+    Returns
+    -------
+    Source or None
+        None where it is none of these.
+
+    Raises
+    ------
+    TypeError
+        When it has other than three dimensions, or holds no real numbers.
+    ValueError
+        When `axes` is no order of x, y and z, or is given for an image.
+    """
+    if axes is not None and sorted(axes) != ["x", "y", "z"]:
+        raise ValueError(f"axes must be 'xyz', 'zyx' or another order of these, got {axes!r}")
+    for library, make in (("SimpleITK", _of_simpleitk), ("nibabel", _of_nibabel)):
+        if _is_of(volume, library) and not hasattr(volume, "__array_interface__"):
+            if axes is not None:
+                raise ValueError(f"{type(volume).__name__} knows its axes: give no axes")
+            return make(volume)
+    if _is_of(volume, "xarray") and hasattr(volume, "dims"):
+        return _of_xarray(volume, axes)
+    if all(hasattr(volume, name) for name in ("shape", "dtype", "__getitem__")):
+        return ArraySource(volume, axes or "xyz")
+    return None
+
+
+def _is_of(volume: Any, library: str) -> bool:
+    """Tell whether an object is of a library, without importing it."""
+    return any(base.__module__.split(".")[0] == library for base in type(volume).__mro__)
+
+
+def _of_simpleitk(image: Any) -> Source:
+    """View an image of SimpleITK, in its own coordinates (LPS)."""
+    import SimpleITK
+
+    if image.GetDimension() != 3 or image.GetNumberOfComponentsPerPixel() != 1:
+        raise TypeError("an image of SimpleITK must have 3 dimensions and one component")
+    axes = np.array(image.GetDirection()).reshape(3, 3) * np.array(image.GetSpacing())
+    geometry = Geometry(axes=axes, origin=np.array(image.GetOrigin()), space="LPS")
+    view = SimpleITK.GetArrayViewFromImage(image)
+    return ArraySource(view, "zyx", what="SimpleITK.Image", geometry=geometry)
+
+
+def _of_nibabel(image: Any) -> Source:
+    """View an image of nibabel, in its own coordinates (RAS)."""
+    if not hasattr(image, "dataobj") or image.affine is None:
+        raise TypeError(f"{type(image).__name__} is no volume")
+    geometry = Geometry(axes=image.affine[:3, :3], origin=image.affine[:3, 3], space="RAS")
+    return ArraySource(image.dataobj, "xyz", what=type(image).__name__, geometry=geometry)
+
+
+def _of_xarray(array: Any, axes: str | None) -> Source:
+    """View an xarray's samples, placed by the coordinates that are evenly spaced."""
+    if len(array.dims) != 3:
+        raise TypeError(f"an array must have 3 dimensions, this one has {len(array.dims)}")
+    axes = axes or _axes_named(array.dims)
+    vectors, origin, notes = np.zeros((3, 3)), np.zeros(3), []
+    for name, axis in zip(array.dims, axes):
+        index = "xyz".index(axis)
+        first, step = 0.0, 1.0
+        if name in array.coords:
+            placed = even_steps(array.coords[name].values)
+            if placed is None:
+                notes.append(f"coordinate '{name}' is not evenly spaced: its indices are taken")
+            else:
+                first, step = placed
+        vectors[index, index], origin[index] = step, first
+    return ArraySource(
+        array,
+        axes,
+        what="xarray.DataArray",
+        name=str(array.name or "values"),
+        fill=next((array.attrs[key] for key in _FILLS if key in array.attrs), None),
+        geometry=Geometry(axes=vectors, origin=origin),
+        notes=tuple(notes),
+    )
+
+
+def _axes_named(names: Sequence[Any]) -> str:
+    """Return the axes that the names of dimensions mean; "xyz" where they mean nothing."""
+    found = [
+        next((axis for axis, known in _NAMES.items() if str(name).lower() in known), "z")
+        for name in names
+    ]
+    return "".join(found) if sorted(found) == ["x", "y", "z"] else "xyz"
+
+
+def even_steps(values: npt.ArrayLike) -> tuple[float, float] | None:
+    """Return the first of evenly spaced values and their step, or None where they are not."""
+    points = np.asarray(values)
+    if points.dtype.kind not in "iuf" or points.ndim != 1 or not np.isfinite(points).all():
+        return None
+    points = points.astype(float)
+    if len(points) < 2:
+        return float(points[0]), 1.0
+    steps = np.diff(points)
+    mean = float(steps.mean())
+    if mean == 0 or np.abs(steps - mean).max() > _EVEN * abs(mean):
+        return None
+    return float(points[0]), mean
