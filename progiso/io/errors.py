@@ -16,6 +16,9 @@ _PLAIN = (
     MemoryError,
 )
 
+#: Warnings for those who write programs, also about files that others have left open.
+_UNTOLD = (DeprecationWarning, PendingDeprecationWarning, ResourceWarning)
+
 
 @contextmanager
 def reading(what: object) -> Iterator[None]:
@@ -69,7 +72,7 @@ def header_warnings(what: object) -> Iterator[None]:
         text = " ".join(str(warning.message).split())
         if lost_data(text):
             raise ValueError(f"cannot read '{what}': {text}")
-        if not issubclass(warning.category, (DeprecationWarning, PendingDeprecationWarning)):
+        if not issubclass(warning.category, _UNTOLD):
             warnings.warn(text if str(what) in text else f"'{what}': {text}", stacklevel=4)
 
 

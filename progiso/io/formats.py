@@ -39,6 +39,7 @@ _VTK = Format("vtk_files", "open_vtk", "VTK")
 _ZFP = Format("zfp", "open_zfp", "zfp")
 _RAW = Format("raw", "open_raw", "raw samples")
 _LEGACY = Format("legacy", "open_legacy", "medical images")
+_TIFF = Format("tiff", "open_tiff", "TIFF", "tiff")
 
 #: Formats by suffix, in lower case; the longest that fits is taken.
 FORMATS: dict[str, Format] = {
@@ -54,6 +55,12 @@ FORMATS: dict[str, Format] = {
     ".nii.gz": _LEGACY,
     ".zfp": _ZFP,
     ".raw": _RAW,
+    ".tif": _TIFF,
+    ".tiff": _TIFF,
+    ".btf": _TIFF,
+    ".tf8": _TIFF,
+    ".lsm": _TIFF,
+    ".stk": _TIFF,
 }
 
 #: What reads a file of another suffix.
