@@ -40,6 +40,7 @@ _ZFP = Format("zfp", "open_zfp", "zfp")
 _RAW = Format("raw", "open_raw", "raw samples")
 _LEGACY = Format("legacy", "open_legacy", "medical images")
 _TIFF = Format("tiff", "open_tiff", "TIFF", "tiff")
+_HDF5 = Format("hdf5", "open_hdf5", "HDF5", "hdf5")
 
 #: Formats by suffix, in lower case; the longest that fits is taken.
 FORMATS: dict[str, Format] = {
@@ -61,6 +62,14 @@ FORMATS: dict[str, Format] = {
     ".tf8": _TIFF,
     ".lsm": _TIFF,
     ".stk": _TIFF,
+    ".h5": _HDF5,
+    ".hdf5": _HDF5,
+    ".hdf": _HDF5,
+    ".nxs": _HDF5,
+    ".he5": _HDF5,
+    ".ims": _HDF5,
+    ".nc": _HDF5,
+    ".nc4": _HDF5,
 }
 
 #: What reads a file of another suffix.
