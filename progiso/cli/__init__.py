@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import sys
+import warnings
 from collections.abc import Sequence
+from typing import Any
 
 from .parser import make_parser
 
@@ -32,7 +34,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     parsed = make_parser().parse_args(arguments)
     try:
-        parsed.run(parsed)
+        with warnings.catch_warnings():
+            warnings.showwarning = _print_note  # type: ignore[assignment]
+            parsed.run(parsed)
     except (OSError, ValueError, RuntimeError, TypeError, ImportError, MemoryError) as error:
         message = " ".join(str(error).split()) or type(error).__name__
         print(f"progiso: error: {message}", file=sys.stderr)
@@ -41,3 +45,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("progiso: interrupted", file=sys.stderr)
         return 130
     return 0
+
+
+def _print_note(message: Warning | str, *_where: Any) -> None:
+    """Print a warning without the line of Python that it comes from."""
+    print(f"progiso: note: {' '.join(str(message).split())}", file=sys.stderr)

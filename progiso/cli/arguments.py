@@ -54,3 +54,8 @@ def zfp_header(text: str) -> tuple[tuple[int, int, int], float]:
     """Parse dimensions and rate."""
     x, y, z, rate = _pattern(text, r"(\d+)x(\d+)x(\d+):([.\d]+)", "256x256x108:8")
     return (int(x), int(y), int(z)), float(rate)
+
+
+def number_or_name(text: str) -> int | str:
+    """Parse a number, or keep a name."""
+    return int(text) if text.isdecimal() else text

@@ -5,31 +5,66 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from contextlib import AbstractContextManager
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkImageData
+from vtkmodules.vtkCommonDataModel import vtkImageData
 
 import progiso
 
+from .._typing import Progress
+from ..compression import as_compressed
 from ..data import GENERATORS, SCANS, compressed, fetch
 from ..data.catalogue import Scan
+from ..io import Selection, Source, open_source
 from ..io.files import atomic_path, check_output
-from ..io.volumes import COMPRESSED_SUFFIXES, PLAIN_SUFFIXES
+from ..io.volumes import COMPRESSED_SUFFIXES, PLAIN_SUFFIXES, compress_source
 from ..mesh import SURFACE_SUFFIXES
 from ..options import CompressionOptions, RenderOptions, SurfaceStyle
+from .info import describe_source, file_bytes
 from .progress import progress_bar
 
 
-def _read(parsed: argparse.Namespace, name: str = "file") -> vtkImageData:
+def _open(parsed: argparse.Namespace, name: str = "file") -> Source:
+    """Open the input, as the options choose of it."""
     path = getattr(parsed, name)
-    dimensions, rate = parsed.zfp_header
-    if dimensions and path.suffix.lower() != ".zfp":
+    dimensions, rate = getattr(parsed, "zfp_header", (None, None))
+    if dimensions and Path(path).suffix.lower() != ".zfp":
         raise ValueError(f"--zfp-header is for .zfp files, it does not go with '{path}'")
-    with progress_bar(f"Reading {path.name}") as progress:
-        return progiso.read(path, dimensions=dimensions, rate=rate, progress=progress)
+    given = _given(parsed, Selection) | {"component": None}  # compression takes a component
+    source = open_source(path, Selection(**given | {"dimensions": dimensions, "rate": rate}))
+    for note in source.about.notes:
+        _remark(f"'{path}': {note}")
+    return source
+
+
+def _read(parsed: argparse.Namespace, name: str = "file") -> vtkImageData:
+    """Read the input as a whole."""
+    with _open(parsed, name) as source, _reading(parsed, name) as progress:
+        image = source.image(progress)
+    if not source.more_than_samples and hasattr(parsed, "array"):
+        parsed.array = None  # it has chosen the samples, which have a name of their own
+    return image
+
+
+def _read_compressed(parsed: argparse.Namespace, name: str = "file") -> vtkImageData:
+    """Read the input, and compress it unless it is compressed."""
+    with _open(parsed, name) as source:
+        if source.more_than_samples:
+            with _reading(parsed, name) as progress:
+                image = source.image(progress)
+            _remark_on_compressed(image, parsed)
+            return as_compressed(image, CompressionOptions(**_given(parsed, CompressionOptions)))
+        with progress_bar(f"Compressing {Path(getattr(parsed, name)).name}") as progress:
+            options = CompressionOptions(progress=progress, **_given(parsed, CompressionOptions))
+            return compress_source(source, options)
+
+
+def _reading(parsed: argparse.Namespace, name: str) -> AbstractContextManager[Progress | None]:
+    return progress_bar(f"Reading {Path(getattr(parsed, name)).name}")
 
 
 def _save(image: vtkImageData, path: Path, *, appended: bool = False) -> None:
@@ -63,10 +98,12 @@ def _remark_on_compressed(image: vtkImageData, parsed: argparse.Namespace) -> No
 
 def compress(parsed: argparse.Namespace) -> None:
     check_output(parsed.out, (".vti",) if parsed.appended else COMPRESSED_SUFFIXES)
-    source = getattr(parsed, "in")
-    with progress_bar(f"Compressing {source.name}") as progress:
-        options = _given(parsed, CompressionOptions)
-        volume = progiso.compress_file(source, progress=progress, **options)
+    with (
+        _open(parsed, "in") as source,
+        progress_bar(f"Compressing {Path(source.about.what).name}") as progress,
+    ):
+        options = CompressionOptions(progress=progress, **_given(parsed, CompressionOptions))
+        volume = compress_source(source, options)
     _save(volume, parsed.out, appended=parsed.appended)
     if parsed.out.suffix.lower() == ".zfp":
         _remark("a .zfp file keeps the samples alone: no origin, no spacing, no array's name")
@@ -100,8 +137,11 @@ def decompress(parsed: argparse.Namespace) -> None:
 
 
 def info(parsed: argparse.Namespace) -> None:
-    image = _read(parsed)
-    about = {"file bytes": parsed.file.stat().st_size, **_describe(image)}
+    with _open(parsed) as source, _reading(parsed, "file") as progress:
+        about = {
+            "file bytes": file_bytes(Path(source.about.what)),
+            **describe_source(source, progress),
+        }
     if parsed.json:
         print(json.dumps(about, indent=2))
         return
@@ -121,37 +161,6 @@ def _text(value: object) -> str:
     if isinstance(value, list):
         return " ".join(_text(v) for v in value)
     return f"{value:.9g}" if isinstance(value, float) else str(value)
-
-
-def _describe(image: vtkImageData) -> dict[str, Any]:
-    """Collect geometry, arrays and, of a compressed volume, its metadata."""
-    matrix = image.GetDirectionMatrix()
-    about = {
-        "dimensions": list(image.GetDimensions()),
-        "extent": list(image.GetExtent()),
-        "spacing": list(image.GetSpacing()),
-        "origin": list(image.GetOrigin()),
-        "direction": [matrix.GetElement(i, j) for i in range(3) for j in range(3)],
-        "bounds": list(image.GetBounds()),
-        "point arrays": _describe_arrays(image.GetPointData()),
-        "cell arrays": _describe_arrays(image.GetCellData()),
-    }
-    if progiso.is_compressed(image):
-        about["compressed"] = progiso.describe(image)
-    return {key: value for key, value in about.items() if value != {}}
-
-
-def _describe_arrays(attributes: vtkDataSetAttributes) -> dict[str, Any]:
-    """Collect type, components and range of every array, by name."""
-    arrays = (attributes.GetAbstractArray(i) for i in range(attributes.GetNumberOfArrays()))
-    return {
-        array.GetName() or "(unnamed)": {
-            "type": array.GetDataTypeAsString(),
-            "components": array.GetNumberOfComponents(),
-            **({"range": list(array.GetRange())} if hasattr(array, "GetRange") else {}),
-        }
-        for array in arrays
-    }
 
 
 def contour(parsed: argparse.Namespace) -> None:
@@ -183,8 +192,7 @@ def render(parsed: argparse.Namespace) -> None:
         for name in ("view", "up", "zoom", "parallel"):
             if getattr(parsed, name):
                 raise ValueError(f"--orbit is a whole camera, it does not go with --{name}")
-    image = _read(parsed)
-    _remark_on_compressed(image, parsed)
+    image = _read_compressed(parsed)
     with progress_bar("Rendering") as progress:
         result = progiso.render(
             image,
@@ -196,7 +204,6 @@ def render(parsed: argparse.Namespace) -> None:
             progress=progress,
             **_given(parsed, SurfaceStyle),
             **_given(parsed, RenderOptions),
-            **_given(parsed, CompressionOptions),
         )
     _write_results(result, parsed)
     _print_summary(result)

@@ -11,18 +11,19 @@ import progiso
 
 from ..bench.command import add_bench
 from ..data import GENERATORS, SCANS
+from ..io.formats import FORMATS
+from ..io.source import SPACES
 from ..io.volumes import PLAIN_SUFFIXES
 from ..mesh import SURFACE_SUFFIXES
 from ..verify.command import add_verify
 from . import commands
-from .arguments import byte_count, orbit, sides, size, vector, zfp_header
+from .arguments import byte_count, number_or_name, orbit, sides, size, vector, zfp_header
 from .commands import about_scan
 
 _Run: TypeAlias = Callable[[argparse.Namespace], None]
 _Subparsers: TypeAlias = "argparse._SubParsersAction[_Parser]"
 
-_COMPRESSIBLE = ".vti .mha .mhd .nrrd .nii .nii.gz .vtk, name_WxHxD_type.raw"
-_READABLE = ".vti .mha .mhd .nrrd .nii .nii.gz .vtk .zfp, name_WxHxD_type.raw"
+_READABLE = "a file of a known format, a folder of slices, file.h5:/array, or name_WxHxD_type.raw"
 
 
 class _Parser(argparse.ArgumentParser):
@@ -37,7 +38,7 @@ def make_parser() -> argparse.ArgumentParser:
     parser = _Parser(
         prog="progiso",
         description="Progressive isosurfaces of compressed volumes.",
-        epilog=f"FILE is anything VTK or nibabel reads as an image: {_READABLE}.",
+        epilog=f"FILE is {_READABLE}; known are {' '.join(FORMATS)}.",
     )
     parser.add_argument("--version", action="version", version=f"progiso {progiso.__version__}")
     subparsers: _Subparsers = parser.add_subparsers(
@@ -77,6 +78,17 @@ def _add_input(command: argparse.ArgumentParser, name: str = "file") -> None:
         "--zfp-header", metavar="WxHxD:RATE", type=zfp_header, default=(None, None),
         help="dimensions and rate of a .zfp file without header",
     )  # fmt: skip
+    choice = command.add_argument_group("where a file holds more than one volume")
+    choice.add_argument("--channel", type=number_or_name, help="number or name of a channel")
+    choice.add_argument("--time", type=int, metavar="T", help="number of a time point")
+    choice.add_argument(
+        "--series", type=number_or_name, help="number or name of an image or series"
+    )
+    choice.add_argument("--level", type=int, help="level of a pyramid (default: 0, the finest)")
+    choice.add_argument(
+        "--space", choices=tuple(SPACES), help="world coordinates to place the volume in"
+    )
+    choice.add_argument("--axes", metavar="XYZ", help="order of a .npy array's axes: xyz or zyx")
 
 
 def _add_compression(
@@ -112,7 +124,7 @@ def _add_compress(subparsers: _Subparsers) -> None:
     command = _add_command(
         subparsers, "compress", commands.compress, "compress an image with fixed-rate ZFP"
     )
-    command.add_argument("in", metavar="IN", type=Path, help=_COMPRESSIBLE)
+    _add_input(command, "in")
     command.add_argument("out", metavar="OUT", type=Path, help="a .vti or .zfp file")
     _add_compression(command)
     _add_threads(command)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy.typing as npt
 
 from .._typing import Array, Dimensions
 from ..geometry import plain_samples
-from .source import Description, Geometry, Region, Source
+from .source import Description, Geometry, Region, Selection, Source
 
 #: Names of an xarray's dimensions by the axis that they mean; what is left is z.
 _NAMES = {"x": ("x", "lon", "longitude", "nx"), "y": ("y", "lat", "latitude", "ny")}
@@ -82,6 +83,36 @@ class ArraySource(Source):
         return np.ma.MaskedArray(samples, hidden.transpose(self._order))
 
 
+class _NumpyFile:
+    """A ``.npy`` file as an array that is mapped anew for each region.
+
+    The pages of one map of everything would count as the process's memory.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        mapped = self._map()
+        self.shape, self.dtype = mapped.shape, mapped.dtype
+
+    def __getitem__(self, region: tuple[slice, ...]) -> Array:
+        found: Array = self._map()[region]
+        return found
+
+    def _map(self) -> Array:
+        return np.load(self._path, mmap_mode="r", allow_pickle=False)
+
+
+def open_npy(path: Path, selection: Selection) -> Source:
+    """Open a ``.npy`` file of a three-dimensional array, indexed [x, y, z] by default."""
+    array = _NumpyFile(path)
+    if len(array.shape) != 3 or array.dtype.kind not in "biuf":
+        raise ValueError(
+            f"'{path}' holds an array of shape {array.shape} and type {array.dtype}, not of 3 "
+            "dimensions and real numbers"
+        )
+    return ArraySource(array, _checked_axes(selection.axes) or "xyz", what=str(path))
+
+
 def source_of(volume: Any, axes: str | None = None) -> Source | None:
     """Make a source of an array or of another library's image.
 
@@ -106,8 +137,7 @@ def source_of(volume: Any, axes: str | None = None) -> Source | None:
     ValueError
         When `axes` is no order of x, y and z, or is given for an image.
     """
-    if axes is not None and sorted(axes) != ["x", "y", "z"]:
-        raise ValueError(f"axes must be 'xyz', 'zyx' or another order of these, got {axes!r}")
+    _checked_axes(axes)
     for library, make in (("SimpleITK", _of_simpleitk), ("nibabel", _of_nibabel)):
         if _is_of(volume, library) and not hasattr(volume, "__array_interface__"):
             if axes is not None:
@@ -118,6 +148,13 @@ def source_of(volume: Any, axes: str | None = None) -> Source | None:
     if all(hasattr(volume, name) for name in ("shape", "dtype", "__getitem__")):
         return ArraySource(volume, axes or "xyz")
     return None
+
+
+def _checked_axes(axes: str | None) -> str | None:
+    """Return the order of axes, or raise where it is none."""
+    if axes is not None and sorted(axes) != ["x", "y", "z"]:
+        raise ValueError(f"axes must be 'xyz', 'zyx' or another order of these, got {axes!r}")
+    return axes
 
 
 def _is_of(volume: Any, library: str) -> bool:

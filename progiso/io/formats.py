@@ -27,20 +27,23 @@ class Format(NamedTuple):
         Optional dependencies of the package (``pip install progiso[extra]``) that it needs.
     title : str
         For lists and messages.
+    arrays : bool
+        Whether a file may hold several arrays, of which `Selection.array` chooses.
     """
 
     module: str
     opener: str
     title: str
     extra: str | None = None
+    arrays: bool = False
 
 
-_VTK = Format("vtk_files", "open_vtk", "VTK")
+_VTK = Format("vtk_files", "open_vtk", "VTK", arrays=True)
 _ZFP = Format("zfp", "open_zfp", "zfp")
 _RAW = Format("raw", "open_raw", "raw samples")
 _LEGACY = Format("legacy", "open_legacy", "medical images")
 _TIFF = Format("tiff", "open_tiff", "TIFF", "tiff")
-_HDF5 = Format("hdf5", "open_hdf5", "HDF5", "hdf5")
+_HDF5 = Format("hdf5", "open_hdf5", "HDF5", "hdf5", arrays=True)
 
 #: Formats by suffix, in lower case; the longest that fits is taken.
 FORMATS: dict[str, Format] = {
@@ -70,6 +73,7 @@ FORMATS: dict[str, Format] = {
     ".ims": _HDF5,
     ".nc": _HDF5,
     ".nc4": _HDF5,
+    ".npy": Format("arrays", "open_npy", "NumPy"),
 }
 
 #: What reads a file of another suffix.
@@ -101,9 +105,14 @@ def open_source(path: FilePath, selection: Selection | None = None) -> Source:
     file, selection = _split(path, selection or Selection())
     if not file.exists():
         raise FileNotFoundError(f"there is no file '{file}'")
-    opener = opener_of(format_of(file), file)
+    kind = format_of(file)
+    opener = opener_of(kind, file)
     with reading(file), header_warnings(file):
         source = opener(file, selection)
+        if not kind.arrays and selection.array not in (None, source.about.name):
+            raise ValueError(
+                f"'{file}' has no array {selection.array!r}; it has: {source.about.name!r}"
+            )
         if selection.space is not None:
             geometry = source.about.geometry.in_space(selection.space)
             source.about = replace(source.about, geometry=geometry)

@@ -99,6 +99,8 @@ class Selection:
         Level of a pyramid; 0, the default, is the finest.
     space : str
         World coordinates to place the volume in, a key of `SPACES`.
+    axes : str
+        Order of the dimensions of an array without names for them (``.npy``): "xyz" or "zyx".
     dimensions, rate
         Of a ``.zfp`` file without header.
     """
@@ -110,6 +112,7 @@ class Selection:
     series: int | str | None = None
     level: int | None = None
     space: str | None = None
+    axes: str | None = None
     dimensions: Sequence[int] | None = None
     rate: float | None = None
 
@@ -124,6 +127,7 @@ class SelectionKeywords(TypedDict, total=False):
     series: int | str | None
     level: int | None
     space: str | None
+    axes: str | None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

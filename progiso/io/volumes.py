@@ -146,7 +146,6 @@ def compress_file(
     [32, 32, 32]
     """
     chosen = CompressionOptions(**options)
-    checked_rate(chosen.rate)
     selection = selection or Selection()
     if chosen.array is not None:
         selection = replace(selection, array=chosen.array)
@@ -158,15 +157,14 @@ def compress_file(
 def compress_source(source: Source, options: CompressionOptions) -> vtkImageData:
     """Compress a source, some slices at a time unless it holds more than samples.
 
-    The samples are read twice where float32 may not hold them: the first time to choose units.
+    The samples are read twice where float32 may not hold them: the first time to choose units. The
+    array has been chosen when the source was opened.
     """
+    checked_rate(options.rate)
     if source.more_than_samples:
         image = source.image(_half(options.progress, 0))
         return compress_with(image, replace(options, progress=_half(options.progress, 1)))
-    about = source.about
-    if options.array not in (None, about.name):
-        raise ValueError(f"the image has no array {options.array!r}; it has: {about.name!r}")
-    count = about.components
+    about, count = source.about, source.about.components
     units = units_of(_slabs(source), component=options.component, components=count)
     volume = build(
         _slabs(source), about.dimensions, about.name, options, units=units, components=count

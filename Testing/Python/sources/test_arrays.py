@@ -10,7 +10,7 @@ from vtkmodules.vtkCommonDataModel import vtkRectilinearGrid
 import progiso
 from helpers.images import check_same, samples_of
 from progiso.geometry import as_image
-from progiso.io import source
+from progiso.io import open_source, source
 from progiso.io.arrays import even_steps, source_of
 
 SHAPE = (9, 10, 11)
@@ -149,6 +149,23 @@ def test_images_of_others():
     assert np.array_equal(samples_of(image), values().T)
     with pytest.raises(ValueError, match="knows its axes"):
         progiso.compress(other, axes="zyx")
+
+
+@pytest.mark.parametrize("order", ["C", "F"])
+def test_numpy_files(order, tmp_path):
+    path = tmp_path / "values.npy"
+    np.save(path, np.asarray(values(">i2"), order=order))
+    assert np.array_equal(samples_of(progiso.read(path)), values("i2").T)
+    assert np.array_equal(samples_of(progiso.read(path, axes="zyx")), values("i2"))
+    check_same(progiso.compress_file(path, rate=5), progiso.compress(values("i2"), rate=5))
+    opened = open_source(path)
+    assert np.array_equal(pickle.loads(pickle.dumps(opened)).read(), values("i2").T)
+    path.write_bytes(path.read_bytes()[:-9])
+    with pytest.raises(ValueError, match="cannot read '.*values.npy'"):
+        progiso.read(path)
+    np.save(path, np.array([{}]), allow_pickle=True)
+    with pytest.raises(ValueError, match="cannot read '.*values.npy'"):
+        progiso.read(path)
 
 
 def test_what_is_no_volume():
