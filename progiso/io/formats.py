@@ -44,6 +44,7 @@ _RAW = Format("raw", "open_raw", "raw samples")
 _LEGACY = Format("legacy", "open_legacy", "medical images")
 _TIFF = Format("tiff", "open_tiff", "TIFF", "tiff")
 _HDF5 = Format("hdf5", "open_hdf5", "HDF5", "hdf5", arrays=True)
+_ZARR = Format("zarr_files", "open_zarr", "Zarr", "zarr", arrays=True)
 
 #: Formats by suffix, in lower case; the longest that fits is taken.
 FORMATS: dict[str, Format] = {
@@ -73,6 +74,8 @@ FORMATS: dict[str, Format] = {
     ".ims": _HDF5,
     ".nc": _HDF5,
     ".nc4": _HDF5,
+    ".zarr": _ZARR,
+    ".zarr.zip": _ZARR,
     ".npy": Format("arrays", "open_npy", "NumPy"),
 }
 

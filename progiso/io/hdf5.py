@@ -13,7 +13,8 @@ import h5py
 import numpy as np
 
 from .._typing import Array
-from .axes import AxesSource, Step, Values, choose, even_step, lay_out, place, role_of, unit_of
+from .axes import AxesSource, Step, Values, choose, lay_out, place, unit_of
+from .inside import Coordinates, list_of, only_volume, positional, steps_of
 from .source import Description, Selection, Source
 
 with suppress(ImportError):
@@ -28,9 +29,6 @@ _SPACINGS = {
     "spacing": "",
     "pixel_size": "",
 }
-
-#: How many arrays a message lists.
-_LISTED = 30
 
 #: Decompressed chunks that HDF5 keeps, for regions that share them.
 _CACHE_BYTES = 2**25
@@ -132,11 +130,11 @@ def _find(path: Path, file: Any, selection: Selection) -> tuple[Any, Any]:
     if selection.array:
         name = selection.array.strip("/")
         if name not in file:
-            raise ValueError(f"'{path}' has no array {name!r}; it has {_listed(_arrays(file))}")
+            raise ValueError(f"'{path}' has no array {name!r}; it has {list_of(_arrays(file))}")
         found = file[name]
         if isinstance(found, h5py.Group):
             inside = _default_of(found)
-            found = inside if inside is not None else _only(path, found)
+            found = inside if inside is not None else only_volume(path, _arrays(found))
         if not _numeric(found):
             raise ValueError(f"'{path}': {name!r} holds {found.dtype}, not real numbers")
         group = found.parent
@@ -144,7 +142,7 @@ def _find(path: Path, file: Any, selection: Selection) -> tuple[Any, Any]:
     signal = _default_of(file)
     if signal is not None and _numeric(signal) and signal.ndim >= 2:
         return signal, signal.parent
-    return _only(path, file), None
+    return only_volume(path, _arrays(file)), None
 
 
 def _default_of(group: Any) -> Any:
@@ -163,22 +161,6 @@ def _default_of(group: Any) -> Any:
     return None
 
 
-def _only(path: Path, group: Any) -> Any:
-    """Return the only array of three axes and more, or of two; raise where there are several."""
-    found = _arrays(group)
-    for axes in (3, 2):
-        fitting = {name: dataset for name, dataset in found.items() if _used(dataset) >= axes}
-        if len(fitting) == 1:
-            return next(iter(fitting.values()))
-        if fitting:
-            name = next(iter(fitting))
-            raise ValueError(
-                f"'{path}' holds several arrays: name one, as in '{path.name}:{name}': "
-                f"{_listed(fitting)}"
-            )
-    raise ValueError(f"'{path}' holds no volume; its arrays are {_listed(found)}")
-
-
 def _arrays(group: Any) -> dict[str, Any]:
     """Return all arrays of numbers below a group by their paths; linked ones once."""
     found: dict[str, Any] = {}
@@ -189,12 +171,6 @@ def _arrays(group: Any) -> dict[str, Any]:
 
     group.visititems(visit)
     return found
-
-
-def _listed(arrays: Mapping[str, Any]) -> str:
-    texts = [f"{name} {'x'.join(map(str, a.shape))} {a.dtype}" for name, a in arrays.items()]
-    more = f" and {len(texts) - _LISTED} more" if len(texts) > _LISTED else ""
-    return (", ".join(texts[:_LISTED]) or "none") + more
 
 
 def _numeric(item: Any) -> bool:
@@ -208,11 +184,6 @@ def _numeric(item: Any) -> bool:
 
 def _is_scale(dataset: Any) -> bool:
     return _text(dataset.attrs.get("CLASS")) == "DIMENSION_SCALE"
-
-
-def _used(dataset: Any) -> int:
-    """Count the axes of more than one sample; of a volume of one sample, all."""
-    return sum(n > 1 for n in dataset.shape) or dataset.ndim
 
 
 def _check_filters(path: Path, dataset: Any) -> None:
@@ -250,7 +221,7 @@ def _meta(path: Path, dataset: Any, signal: Any) -> Meta:
         listed = [_text(name) for name in np.ravel(names)]
         meta.axes = listed if len(listed) == dataset.ndim else None
     elif any(dimension.label for dimension in dataset.dims):
-        meta.axes = _positions([dimension.label for dimension in dataset.dims])
+        meta.axes = positional([dimension.label for dimension in dataset.dims], {})
     if not meta.steps:
         meta.steps = _attribute_steps(dataset)
     if meta.axes is not None and len(meta.axes) != dataset.ndim:
@@ -287,58 +258,34 @@ def _read_nexus(dataset: Any, group: Any, names: Any, meta: Meta) -> None:
         if text:
             meta.notes.append(f"NeXus' axes {text} do not fit {dataset.shape}")
         return
-    meta.axes = _positions(text)
-    coordinates = {position: group[name] for position, name in enumerate(text) if name in group}
-    _read_coordinates(coordinates, dataset.shape, meta)
+    _read_coordinates(dataset, text, {i: group.get(name) for i, name in enumerate(text)}, meta)
 
 
 def _read_dimensions(dataset: Any, meta: Meta) -> None:
     """Read NetCDF's dimensions, and their coordinates."""
     scales = [dimension[0] if len(dimension) else None for dimension in dataset.dims]
     names = [_last(scale) if scale is not None else "" for scale in scales]
-    meta.axes = _positions(names, scales)
-    coordinates = {
-        position: scale
-        for position, scale in enumerate(scales)
-        if scale is not None and not _is_bare(scale)
-    }
-    _read_coordinates(coordinates, dataset.shape, meta)
+    _read_coordinates(dataset, names, dict(enumerate(scales)), meta)
+
+
+def _read_coordinates(
+    dataset: Any, names: Sequence[str], arrays: Mapping[int, Any], meta: Meta
+) -> None:
+    """Read the arrays of coordinates that belong to axes, or None."""
+    coordinates = {}
+    for position, found in arrays.items():
+        if found is None or not _numeric(found) or found.ndim != 1 or _is_bare(found):
+            continue
+        unit = found.attrs.get("units", found.attrs.get("unit"))
+        values = _values(found).decode(found[()])
+        coordinates[position] = Coordinates(_last(found), values, unit)
+    meta.axes = positional(names, {i: found.unit for i, found in coordinates.items()})
+    meta.steps = steps_of(meta.axes, coordinates, dataset.shape, meta.notes)
 
 
 def _is_bare(scale: Any) -> bool:
     """Tell whether a dimension of NetCDF has a length only, and no coordinates."""
     return _text(scale.attrs.get("NAME")).startswith("This is a netCDF dimension but not")
-
-
-def _positions(names: Sequence[str], scales: Sequence[Any] = ()) -> list[str]:
-    """Name axes by their places: the last ones are z, y and x, what tells of time is time."""
-    roles = [role_of(name) for name in names]
-    for i, scale in enumerate(scales):
-        if scale is not None and " since " in _text(scale.attrs.get("units")):
-            roles[i] = "t"
-    if {"z", "y", "x"} <= set(roles):
-        return roles
-    kept = [i for i, role in enumerate(roles) if role not in ("t", "c", "s")]
-    for place_, i in zip("xyz", reversed(kept)):
-        roles[i] = place_
-    return roles
-
-
-def _read_coordinates(coordinates: Mapping[int, Any], shape: Sequence[int], meta: Meta) -> None:
-    """Turn coordinates of axes into steps; what is not evenly spaced is told."""
-    assert meta.axes is not None
-    for position, found in coordinates.items():
-        role = meta.axes[position]
-        if role not in ("z", "y", "x") or not _numeric(found) or found.ndim != 1:
-            continue
-        values = _values(found).decode(found[()])
-        if values.size == shape[position] + 1:  # edges of bins
-            values = (values[1:] / 2) + (values[:-1] / 2)
-        step = even_step(values, unit_of(found.attrs.get("units", found.attrs.get("unit"))))
-        if step.size is None and values.size > 1:
-            meta.notes.append(f"the coordinates {_last(found)!r} are not evenly spaced: left out")
-            continue
-        meta.steps[role] = step
 
 
 def _values(dataset: Any) -> Values:
@@ -416,7 +363,7 @@ def _imaris_steps(attributes: Any, sizes: Sequence[int]) -> dict[str, Step]:
 
 def _numbered(group: Any, name: str) -> list[Any]:
     """Return the groups "NAME 0", "NAME 1" and so on."""
-    found = []
+    found: list[Any] = []
     while f"{name} {len(found)}" in group:
         found.append(group[f"{name} {len(found)}"])
     if not found:
