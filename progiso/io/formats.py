@@ -41,6 +41,8 @@ class Format(NamedTuple):
 _VTK = Format("vtk_files", "open_vtk", "VTK", arrays=True)
 _ZFP = Format("zfp", "open_zfp", "zfp")
 _RAW = Format("raw", "open_raw", "raw samples")
+_METAIMAGE = Format("metaimage", "open_metaimage", "MetaImage")
+_NRRD = Format("nrrd", "open_nrrd", "NRRD")
 _LEGACY = Format("legacy", "open_legacy", "medical images")
 _TIFF = Format("tiff", "open_tiff", "TIFF", "tiff")
 _HDF5 = Format("hdf5", "open_hdf5", "HDF5", "hdf5", arrays=True)
@@ -52,10 +54,10 @@ FORMATS: dict[str, Format] = {
     ".pvti": _VTK,
     ".vtk": _VTK,
     ".vtkhdf": _VTK,
-    ".mha": _LEGACY,
-    ".mhd": _LEGACY,
-    ".nrrd": _LEGACY,
-    ".nhdr": _LEGACY,
+    ".mha": _METAIMAGE,
+    ".mhd": _METAIMAGE,
+    ".nrrd": _NRRD,
+    ".nhdr": _NRRD,
     ".nii": _LEGACY,
     ".nii.gz": _LEGACY,
     ".zfp": _ZFP,

@@ -10,18 +10,12 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from .._typing import Array, Progress
 from .images import ImageSource
-from .metaimage import metaimage_slabs, read_metaimage
 from .nifti import nifti_slabs, read_nifti
-from .nrrd import nrrd_slabs, read_nrrd
 from .others import read_other
 from .slab_files import SlabFile
 from .source import Description, Region, Selection, Source
 
 _READERS = {
-    ".mha": (read_metaimage, metaimage_slabs),
-    ".mhd": (read_metaimage, metaimage_slabs),
-    ".nrrd": (read_nrrd, nrrd_slabs),
-    ".nhdr": (read_nrrd, nrrd_slabs),
     ".nii": (read_nifti, nifti_slabs),
     ".gz": (read_nifti, nifti_slabs),
 }

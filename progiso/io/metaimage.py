@@ -1,22 +1,30 @@
-"""MetaImage (``.mha``, ``.mhd``): VTK reads the samples but ignores the orientation."""
+"""MetaImage (``.mha``, ``.mhd``), with all synonyms of its header's fields."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from vtkmodules.util.numpy_support import get_vtk_to_numpy_typemap, vtk_to_numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
-from vtkmodules.vtkIOImage import vtkMetaImageReader
 
 from .._typing import FilePath
-from .._vtk import dimensions_of, place_as_read, vtk_errors
-from ..geometry import axes_of, set_axes
-from .slab_files import Inflated, SlabFile, opened_at
-
-#: The text header.
-_Fields = dict[str, str]
+from ..geometry import axes_of
+from .header_text import (
+    LONGEST_HEADER,
+    checked_geometry,
+    data_file,
+    decode,
+    integers,
+    misspelt_fields,
+    numbered_files,
+    reals,
+    shortened,
+)
+from .source import Description, Geometry, Selection
+from .stored import Layout, StoredSource
 
 _ELEMENT_TYPES = {
     "int8": "MET_CHAR",
@@ -31,104 +39,173 @@ _ELEMENT_TYPES = {
     "float64": "MET_DOUBLE",
 }
 
+#: What other names the format has for fields; the first one that a header has counts.
+_SYNONYMS = {
+    "origin": ("Origin", "Offset", "Position", "ImagePosition"),
+    "direction": ("TransformMatrix", "Rotation", "Orientation"),
+    "spacing": ("ElementSpacing", "ElementSize"),
+    "big": ("ElementByteOrderMSB", "BinaryDataByteOrderMSB"),
+}
 
-def read_metaimage(path: FilePath) -> vtkImageData:
-    """Read a MetaImage with its ``TransformMatrix`` as the direction matrix.
+#: Fields that are looked at, or that do not say where samples are or what they mean.
+_KNOWN = {
+    *(name for names in _SYNONYMS.values() for name in names),
+    *"""ObjectType ObjectSubType ObjectSubTypeName TransformType NDims Name ID ParentID Comment
+    Color AcquisitionDate CompressedData CompressedDataSize CompressionLevel BinaryData
+    CenterOfRotation DistanceUnits AnatomicalOrientation DimSize HeaderSize Modality SequenceID ElementMin ElementMax
+    ElementNumberOfChannels ElementNBits ElementToIntensityFunctionSlope
+    ElementToIntensityFunctionOffset ElementType ElementDataFile""".split(),
+}
 
-    Parameters
-    ----------
-    path : str or os.PathLike
-        A ``.mha`` or ``.mhd`` file.
+#: As MetaIO has them on every machine: "long" is four bytes.
+_DTYPES = {
+    **{element: name for name, element in _ELEMENT_TYPES.items()},
+    "MET_LONG": "int32",
+    "MET_ULONG": "uint32",
+    "MET_ASCII_CHAR": "int8",
+}
 
-    Returns
-    -------
-    vtkmodules.vtkCommonDataModel.vtkImageData
-        In the file's own world coordinates (usually left-posterior-superior).
+
+def open_metaimage(path: Path, selection: Selection) -> StoredSource:
+    """Open a MetaImage (``.mha``, ``.mhd``).
+
+    Its world is left-posterior-superior, as ITK takes it. Of ``NDims = 4`` the last axis is time.
+    The header is our own to read, as ITK's reader trusts ``CompressedDataSize``, inflates from the
+    start for every region, and ends the process where some fields are malformed.
     """
-    reader = _reader(path)
-    with vtk_errors(f"cannot read '{path}'"):
-        reader.Update()
-    image = reader.GetOutput()
-    _set_direction(image, _header(path)[0])
-    return image
+    fields, header_bytes, listed = _header(path)
+    sizes, dtype = _layout(path, fields)
+    extra = sizes[3] if len(sizes) > 3 else 1
+    width, height, depth = (*sizes, 1)[:3]
+    files, offset = _data_files(path, fields, header_bytes, listed)
+    binary = _flag(path, fields, "BinaryData", True)
+    packed = _flag(path, fields, "CompressedData", False)
+    layout = Layout(
+        files=tuple(files),
+        shape=(depth, height, width),
+        dtype=dtype,
+        encoding="zlib" if packed else "raw" if binary else "text",
+        offset=offset,
+        components=_integer(path, fields, "ElementNumberOfChannels", 1),
+        volumes=extra,
+    )
+    about = Description(
+        what=str(path),
+        shape=layout.shape,
+        dtype=dtype.newbyteorder("="),
+        name="MetaImage",
+        geometry=_geometry(path, fields, len(sizes)),
+        notes=misspelt_fields(fields, _KNOWN) + _ignored(path, fields),
+    )
+    return StoredSource(about, layout, selection)
 
 
-def _set_direction(image: vtkImageData, fields: _Fields) -> None:
-    """Set the direction that VTK ignores."""
-    transform = fields.get("TransformMatrix")
-    if transform and len(transform.split()) == 9:
-        # The file lists one axis after the other: its rows are the direction's columns.
-        direction = np.array(transform.split(), float).reshape(3, 3).T
-        set_axes(image, direction * np.asarray(image.GetSpacing()), image.GetOrigin())
+def _header(path: Path) -> tuple[dict[str, str], int, list[str]]:
+    """Read the text header, its length, and the lines behind it if they list files.
 
-
-def metaimage_slabs(path: FilePath) -> SlabFile | None:
-    """Open a MetaImage to be read some slices at a time; errors as in `read_metaimage`.
-
-    Returns
-    -------
-    SlabFile or None
-        None when its samples are text, in several files, not three-dimensional, or of a type whose
-        size depends on the machine.
+    ``ElementDataFile`` is always the last field.
     """
-    path = Path(path)
-    fields, header_bytes = _header(path)
-    data = fields.get("ElementDataFile", "")
-    plain = _flag(fields, "BinaryData") and data.split()[:1] != ["LIST"] and "%" not in data
-    long = fields.get("ElementType", "").endswith("LONG")
-    if fields.get("NDims") != "3" or not plain or long:
-        return None
-    reader = _reader(path)
-    with vtk_errors(f"cannot read '{path}'"):
-        reader.UpdateInformation()
-    kind = reader.GetDataScalarType()
-    big = _flag(fields, "BinaryDataByteOrderMSB") or _flag(fields, "ElementByteOrderMSB")
-    dtype = np.dtype(get_vtk_to_numpy_typemap()[kind]).newbyteorder(">" if big else "<")
-    dimensions, components = dimensions_of(reader), reader.GetNumberOfScalarComponents()
-    local = data.upper() == "LOCAL"
-    offset = int(fields.get("HeaderSize", 0)) or (header_bytes if local else 0)
-    if offset == -1:  # the samples end the file
-        offset = -int(np.prod(dimensions, dtype=object)) * components * dtype.itemsize
-    wrap = Inflated if _flag(fields, "CompressedData") else None
-
-    def place(image: vtkImageData) -> None:
-        place_as_read(image, reader)
-        _set_direction(image, fields)
-
-    return SlabFile(
-        path,
-        "MetaImage",
-        dimensions,
-        dtype,
-        open=opened_at(path if local else path.parent / data, offset, wrap=wrap),
-        place=place,
-        components=components,
-        vtk_type=kind,
+    fields: dict[str, str] = {}
+    with open(path, "rb") as file:
+        while "ElementDataFile" not in fields:
+            line = decode(file.readline(2**16))
+            key, _, value = line.partition("=" if "=" in line else ":")
+            foreign = not fields and key.strip() not in _KNOWN
+            if not line or foreign or file.tell() > LONGEST_HEADER:
+                lacking = "has no ElementDataFile" if fields else "is not a MetaImage"
+                raise ValueError(f"'{path}' {lacking}")
+            fields[key.strip()] = value.strip()
+        header_bytes, names = file.tell(), b""
+        if fields["ElementDataFile"].split()[:1] == ["LIST"]:
+            names = file.read(LONGEST_HEADER)
+    return (
+        fields,
+        header_bytes,
+        [decode(line).strip() for line in names.splitlines() if line.strip()],
     )
 
 
-def _flag(fields: _Fields, key: str) -> bool:
-    return fields.get(key, "False").lower() in ("true", "1")
+def _layout(path: Path, fields: dict[str, str]) -> tuple[list[int], np.dtype[Any]]:
+    """Return the sizes, fastest axis first, and the sample type with its byte order."""
+    for key in ("NDims", "DimSize", "ElementType"):
+        if key not in fields:
+            raise ValueError(f"'{path}' lacks the field '{key}'")
+    if fields.get("ObjectType", "Image").lower() != "image":
+        raise ValueError(f"'{path}' holds a {shortened(fields['ObjectType'])}, not an image")
+    count = _integer(path, fields, "NDims", 3)
+    if count not in (2, 3, 4):
+        raise ValueError(f"'{path}' is no volume: NDims = {count}")
+    sizes = integers(path, "DimSize", fields["DimSize"], count)
+    if min(sizes) < 1:
+        raise ValueError(f"'{path}' holds no samples: DimSize = {fields['DimSize']}")
+    if fields["ElementType"] not in _DTYPES:
+        raise ValueError(
+            f"'{path}': the ElementType '{shortened(fields['ElementType'])}' is not supported"
+        )
+    big = any(_flag(path, fields, key, False) for key in _SYNONYMS["big"])
+    return sizes, np.dtype(_DTYPES[fields["ElementType"]]).newbyteorder(">" if big else "<")
 
 
-def _reader(path: FilePath) -> vtkMetaImageReader:
-    reader = vtkMetaImageReader()
-    if not reader.CanReadFile(str(path)):
-        raise ValueError(f"'{path}' is not a MetaImage")
-    reader.SetFileName(str(path))
-    return reader
+def _data_files(
+    path: Path, fields: dict[str, str], header_bytes: int, listed: list[str]
+) -> tuple[list[Path], int]:
+    """Return the files with the samples, and how many bytes come first in them."""
+    name, offset = fields["ElementDataFile"], _integer(path, fields, "HeaderSize", 0)
+    if offset < -1:
+        raise ValueError(f"'{path}': HeaderSize = {offset}")
+    if name.upper() == "LOCAL":
+        return [path], offset or header_bytes
+    words = name.split()
+    if words[:1] == ["LIST"]:
+        if not listed:
+            raise ValueError(f"'{path}' lists no data files")
+        return [data_file(path, line) for line in listed], offset
+    if len(words) in (3, 4) and "%" in words[0]:
+        first, last, step = (*integers(path, "ElementDataFile", " ".join(words[1:])), 1)[:3]
+        return numbered_files(path, words[0], first, last, step), offset
+    return [data_file(path, name)], offset
 
 
-def _header(path: FilePath) -> tuple[_Fields, int]:
-    """Read the text header, and its length; ElementDataFile is always its last field."""
-    fields: _Fields = {}
-    with open(path, "rb") as file:
-        for line in iter(lambda: file.readline(4096), b""):
-            key, _, value = line.decode("latin-1").partition("=")
-            fields[key.strip()] = value.strip()
-            if key.strip() == "ElementDataFile":
-                break
-        return fields, file.tell()
+def _geometry(path: Path, fields: dict[str, str], count: int) -> Geometry:
+    """Return the place of the first three axes."""
+    spacing, origin, matrix = np.ones(3), np.zeros(3), np.eye(3)
+    used = min(count, 3)
+    for kind, target, values in (("spacing", spacing, count), ("origin", origin, count)):
+        key = next((k for k in _SYNONYMS[kind] if k in fields), None)
+        if key is not None:
+            target[:used] = reals(path, key, fields[key], values)[:used]
+    key = next((k for k in _SYNONYMS["direction"] if k in fields), None)
+    if key is not None:
+        # the file lists one axis after the other: its rows are the direction's columns
+        rows = np.reshape(reals(path, key, fields[key], count * count), (count, count))
+        matrix[:used, :used] = rows[:used, :used].T
+    units = fields.get("DistanceUnits")
+    return checked_geometry(
+        path, matrix * spacing, origin, units=None if units in ("?", "") else units, space="LPS"
+    )
+
+
+def _ignored(path: Path, fields: dict[str, str]) -> tuple[str, ...]:
+    """Tell of a scale of the samples, which ITK does not apply either."""
+    for key, none in (("Slope", 1.0), ("Offset", 0.0)):
+        key = "ElementToIntensityFunction" + key
+        if key in fields and reals(path, key, fields[key], 1) != [none]:
+            return (f"its {key}, {fields[key]}, is not applied",)
+    return ()
+
+
+def _flag(path: Path, fields: dict[str, str], key: str, default: bool) -> bool:
+    """Read a field as true or false."""
+    text = fields.get(key, str(default)).lower()
+    if text not in ("true", "false", "1", "0", "t", "f"):
+        raise ValueError(
+            f"'{path}': the field '{key}' must be True or False, it is '{shortened(text)}'"
+        )
+    return text[0] in "t1"
+
+
+def _integer(path: Path, fields: dict[str, str], key: str, default: int) -> int:
+    return integers(path, key, fields[key], 1)[0] if key in fields else default
 
 
 def write_metaimage(image: vtkImageData, path: FilePath) -> None:
