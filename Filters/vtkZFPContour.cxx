@@ -15,13 +15,16 @@
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCompressedVolume.h"
+#include "vtkDataArrayRange.h"
 #include "vtkErrorCode.h"
 #include "vtkIdList.h"
 #include "vtkImageData.h"
 #include "vtkImageTransform.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMatrix3x3.h"
 #include "vtkObjectFactory.h"
+#include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSMPTools.h"
 #include "vtkUnsignedCharArray.h"
@@ -237,7 +240,32 @@ void vtkZFPContour::ContourVolume(
     MarkGhosts(output, input->GetExtent(), extent);
   }
   vtkImageTransform::TransformPointSet(geometry, output);
+  TurnOutward(geometry, output);
   this->UpdateProgress(1.0);
+}
+
+//------------------------------------------------------------------------------
+void vtkZFPContour::TurnOutward(vtkImageData* image, vtkPolyData* surface)
+{
+  // vtkImageTransform multiplies normals by cofactors, which have the determinant's sign
+  const double mirrors = image->GetDirectionMatrix()->Determinant();
+  vtkDataArray* const normals = surface->GetPointData()->GetNormals();
+  if (mirrors < 0.0 && normals)
+  {
+    auto values = vtk::DataArrayValueRange<3>(normals);
+    std::transform(values.begin(), values.end(), values.begin(), [](auto v) { return -v; });
+    normals->Modified();
+  }
+  const double* const spacing = image->GetSpacing();
+  if (mirrors * spacing[0] * spacing[1] * spacing[2] < 0.0)
+  {
+    vtkCellArray* const triangles = surface->GetPolys();
+    for (vtkIdType i = 0; i < triangles->GetNumberOfCells(); ++i)
+    {
+      triangles->ReverseCellAtId(i);
+    }
+    triangles->Modified();
+  }
 }
 
 //------------------------------------------------------------------------------

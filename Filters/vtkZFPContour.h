@@ -7,7 +7,8 @@
  * Makes of a compressed volume (see vtkCompressedVolume) the vtkPolyData that vtkFlyingEdges3D
  * makes of the decoded image: the same points, to the last bit of their coordinates, normals and
  * gradients, and the same triangles, in another order. The order does not depend on the number of
- * threads.
+ * threads. Of an image whose axes are left-handed, vtkFlyingEdges3D's surface is inside out, and
+ * this filter's is not, see TurnOutward().
  *
  * The volume is never decoded as a whole. It is cut into bricks of BrickSize^3 cells. Every thread
  * decodes one at a time and contours it with vtkFlyingEdges3D, and the parts are joined at the
@@ -48,6 +49,7 @@
 class BrickRanges;
 class vtkCompressedVolume;
 class vtkImageData;
+class vtkPolyData;
 
 class VTKPROGISOFILTERS_EXPORT vtkZFPContour : public vtkPolyDataAlgorithm
 {
@@ -115,6 +117,13 @@ public:
   vtkGetMacro(ComputeScalars, vtkTypeBool);
   vtkBooleanMacro(ComputeScalars, vtkTypeBool);
   ///@}
+
+  /**
+   * Turns what vtkFlyingEdges3D makes of an image as all surfaces should be: normals point to
+   * smaller values, and corners go around them counterclockwise. VTK's do not where the image's
+   * direction matrix mirrors, as that of most brain scans; nothing changes where it does not.
+   */
+  static void TurnOutward(vtkImageData* image, vtkPolyData* surface);
 
   ///@{
   /**

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
+import struct
 from collections.abc import Callable
 from numbers import Real
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
+from vtkmodules.vtkCommonCore import vtkDataArray
+from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkImageData, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
 from vtkmodules.vtkIOGeometry import vtkOBJWriter, vtkSTLWriter
 from vtkmodules.vtkIOPLY import vtkPLYWriter
@@ -19,8 +22,9 @@ from ._typing import FilePath, ImageLike, Isovalues, Progress
 from ._vtk import observe_progress, vtk_errors
 from .appearance import as_list
 from .compression import as_compressed, check_array, find_array, is_compressed
-from .geometry import as_image, cell_centres
-from .io.files import atomic_path, check_output
+from .geometry import GHOSTS, as_image, cell_centres
+from .io.files import DISK_FULL, atomic_path, check_bytes, check_output
+from .io.vtk_files import write_with
 from .options import CompressionOptions
 from .vtkProgIsoFilters import vtkZFPContour
 
@@ -82,7 +86,8 @@ def contour(
         When there is no isovalue, one is not finite, there is no such array or component, the image
         is flat, the rate is out of range, or missing where NaN is to be hidden.
     RuntimeError
-        When a compressed volume is damaged, or a plain image cannot be compressed, as with NaN.
+        When a compressed volume is damaged, a plain image cannot be compressed, or samples are NaN
+        or infinite, and not hidden.
 
     Examples
     --------
@@ -115,7 +120,10 @@ def contour(
     observe_progress(extractor, progress)
     with vtk_errors("cannot contour"):
         extractor.Update()
-    return extractor.GetOutput()
+    surface = extractor.GetOutput()
+    if not is_compressed(image):
+        vtkZFPContour.TurnOutward(image, surface)
+    return surface
 
 
 def _isovalues(isovalues: Isovalues) -> list[float]:
@@ -146,10 +154,42 @@ def _plain_contour(image: vtkImageData, array: str | None, component: int) -> vt
         values = np.ascontiguousarray(vtk_to_numpy(chosen)[:, component])
         name, chosen = chosen.GetName(), numpy_to_vtk(values)
         chosen.SetName(name)
+    _check_shown(image)
+    _check_finite(chosen)
     samples.GetPointData().SetScalars(chosen)
     extractor = vtkFlyingEdges3D()
     extractor.SetInputData(samples)
     return extractor
+
+
+def _check_shown(image: vtkImageData) -> None:
+    """Raise where samples or cells are hidden: VTK's extractor would go through them."""
+    flags = vtkDataSetAttributes
+    for data, name, hiding in (
+        (image.GetPointData(), "points", flags.HIDDENPOINT),
+        (image.GetCellData(), "cells", flags.HIDDENCELL | flags.REFINEDCELL),
+    ):
+        ghosts = data.GetArray(GHOSTS)
+        hidden = 0 if ghosts is None else int(np.count_nonzero(vtk_to_numpy(ghosts) & hiding))
+        if hidden:
+            raise RuntimeError(
+                f"cannot contour: the image hides {hidden} {name}: give a rate to leave holes there"
+            )
+
+
+def _check_finite(array: vtkDataArray) -> None:
+    """Raise where samples are NaN or infinite: the surface would have points at NaN."""
+    values = vtk_to_numpy(array)
+    bad = 0
+    if values.dtype.kind == "f":
+        flat = values.reshape(-1)
+        parts = range(0, flat.size, 2**24)
+        bad = sum(int(np.count_nonzero(~np.isfinite(flat[i : i + 2**24]))) for i in parts)
+    if bad:
+        raise RuntimeError(
+            f"cannot contour: array '{array.GetName()}' has {bad} samples that are NaN or "
+            "infinite: give mask_nan=True (--mask-nan) and a rate to leave holes there"
+        )
 
 
 def save_surface(surface: vtkPolyData, path: FilePath, *, progress: Progress | None = None) -> None:
@@ -185,14 +225,64 @@ def save_surface(surface: vtkPolyData, path: FilePath, *, progress: Progress | N
     """
     check_output(path, SURFACE_SUFFIXES)
     with atomic_path(path) as temporary:
-        writer = _WRITERS[temporary.suffix.lower()]()
+        suffix = temporary.suffix.lower()
+        writer = _WRITERS[suffix]()
         writer.SetInputData(surface)
-        writer.SetFileName(str(temporary))
         observe_progress(writer, progress)
-        with vtk_errors(f"cannot write '{temporary.name}'"):
-            written = writer.Write()
-        if not written or not temporary.is_file():
-            raise RuntimeError(f"cannot write '{temporary.name}'")
+        if suffix == ".vtp":
+            _write_vtp(writer, temporary)
+        else:
+            write_with(writer, temporary)
+            _CHECKS[suffix](temporary, surface)
+
+
+def _write_vtp(writer: vtkXMLPolyDataWriter, path: Path) -> None:
+    """Write by way of memory: on a full disk VTK's writer of surfaces crashes."""
+    writer.WriteToOutputStringOn()
+    with vtk_errors(f"cannot write '{path}'"):
+        writer.Write()
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(writer.GetOutputString())
+
+
+def _check_stl(path: Path, _surface: vtkPolyData) -> None:
+    """Compare the size with the number of triangles that the file announces."""
+    with open(path, "rb") as file:
+        (triangles,) = struct.unpack("<80xI", file.read(84).ljust(84, b"\0"))
+    check_bytes(path, 84 + 50 * triangles)
+
+
+_PLY_SIZES = {"char": 1, "uchar": 1, "short": 2, "ushort": 2, "int": 4, "uint": 4, "float": 4}
+
+
+def _check_ply(path: Path, surface: vtkPolyData) -> None:
+    """Compare the size with what the header announces; VTK's writer tells of no full disk."""
+    with open(path, "rb") as file:
+        lines = list(iter(lambda: file.readline(4096).decode("ascii", "replace"), ""))[:64]
+    if "end_header\n" not in lines:
+        raise RuntimeError(f"cannot write '{path}': {DISK_FULL}")
+    header = [line.split() for line in lines[: lines.index("end_header\n") + 1]]
+    length = sum(len(line) for line in lines[: len(header)])
+    of_point = sum(
+        _PLY_SIZES[words[1]] for words in header if words[:1] == ["property"] and len(words) == 3
+    )
+    polygons = surface.GetPolys()
+    corners = polygons.GetNumberOfConnectivityIds()
+    points = surface.GetNumberOfPoints()
+    check_bytes(path, length + points * of_point + polygons.GetNumberOfCells() + 4 * corners)
+
+
+def _check_obj(path: Path, surface: vtkPolyData) -> None:
+    """Count points and triangles; VTK's writer tells of no full disk."""
+    found, last = {b"v ": 0, b"f ": 0}, b""
+    with open(path, "rb") as file:
+        for line in file:
+            last = line
+            if line[:2] in found:
+                found[line[:2]] += 1
+    expected = {b"v ": surface.GetNumberOfPoints(), b"f ": surface.GetNumberOfPolys()}
+    if found != expected or not last.endswith(b"\n"):
+        raise RuntimeError(f"cannot write '{path}': {DISK_FULL}")
 
 
 def _vtp_writer() -> vtkXMLPolyDataWriter:
@@ -214,6 +304,13 @@ _WRITERS: dict[str, Callable[[], Any]] = {
     ".stl": _stl_writer,
     ".ply": vtkPLYWriter,
     ".obj": vtkOBJWriter,
+}
+
+#: Raise `RuntimeError` where a file lacks a part of its surface.
+_CHECKS: dict[str, Callable[[Path, vtkPolyData], None]] = {
+    ".stl": _check_stl,
+    ".ply": _check_ply,
+    ".obj": _check_obj,
 }
 
 #: Formats for surfaces.

@@ -229,6 +229,8 @@ def write_png(pixels: npt.NDArray[np.uint8], path: FilePath) -> None:
     image.GetPointData().SetScalars(scalars)
     writer = vtkPNGWriter()
     writer.SetInputData(image)
-    with atomic_path(path) as temporary, vtk_errors(f"cannot write '{path}'"):
-        writer.SetFileName(str(temporary))
+    writer.SetWriteToMemory(True)  # to a file it does not tell that the disk is full
+    with vtk_errors(f"cannot write '{path}'"):
         writer.Write()
+    with atomic_path(path) as temporary:
+        temporary.write_bytes(vtk_to_numpy(writer.GetResult()).tobytes())

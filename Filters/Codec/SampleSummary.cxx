@@ -99,7 +99,7 @@ Status SampleSummary::CheckValues() const
   {
     return Status::Error(this->NaNs, " NaN and ", this->Infinities,
       " infinite values (as float32), which ZFP cannot compress: replace them first, or have them "
-      "hidden (MaskNonFinite).");
+      "hidden (MaskNonFinite; in Python mask_nan=True, in commands --mask-nan).");
   }
   if (this->ShowsTinyBlocks())
   {

@@ -20,7 +20,7 @@ from ..compression import as_compressed
 from ..data import GENERATORS, SCANS, compressed, fetch
 from ..data.catalogue import Scan
 from ..io import Selection, Source, open_source
-from ..io.files import atomic_path, check_output
+from ..io.files import atomic_path, check_output, check_outputs
 from ..io.volumes import COMPRESSED_SUFFIXES, PLAIN_SUFFIXES, compress_source
 from ..mesh import SURFACE_SUFFIXES
 from ..options import CompressionOptions, RenderOptions, SurfaceStyle
@@ -97,7 +97,8 @@ def _remark_on_compressed(image: vtkImageData, parsed: argparse.Namespace) -> No
 
 
 def compress(parsed: argparse.Namespace) -> None:
-    check_output(parsed.out, (".vti",) if parsed.appended else COMPRESSED_SUFFIXES)
+    suffixes = (".vti",) if parsed.appended else COMPRESSED_SUFFIXES
+    check_output(parsed.out, suffixes, inputs=[getattr(parsed, "in")])
     with (
         _open(parsed, "in") as source,
         progress_bar(f"Compressing {Path(source.about.what).name}") as progress,
@@ -128,7 +129,7 @@ def rate(parsed: argparse.Namespace) -> None:
 
 
 def decompress(parsed: argparse.Namespace) -> None:
-    check_output(parsed.out, PLAIN_SUFFIXES)
+    check_output(parsed.out, PLAIN_SUFFIXES, inputs=[getattr(parsed, "in")])
     image = _read(parsed, "in")
     with progress_bar("Decompressing") as progress:
         image = progiso.decompress(image, progress=progress)
@@ -164,7 +165,7 @@ def _text(value: object) -> str:
 
 
 def contour(parsed: argparse.Namespace) -> None:
-    check_output(parsed.out, SURFACE_SUFFIXES)
+    check_output(parsed.out, SURFACE_SUFFIXES, inputs=[getattr(parsed, "in")])
     image = _read(parsed, "in")
     _remark_on_compressed(image, parsed)
     with progress_bar("Contouring") as progress:
@@ -184,10 +185,9 @@ def contour(parsed: argparse.Namespace) -> None:
 
 
 def render(parsed: argparse.Namespace) -> None:
-    for path in filter(None, (parsed.depth, parsed.stats)):
-        check_output(path)
     if parsed.output is not None:
         check_output(parsed.output, (".png",))
+    check_outputs((parsed.output, parsed.depth, parsed.stats), inputs=[parsed.file])
     if parsed.orbit is not None:
         for name in ("view", "up", "zoom", "parallel"):
             if getattr(parsed, name):

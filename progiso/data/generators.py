@@ -115,12 +115,13 @@ def generate(
     ValueError
         When the size or an option is unknown or out of range.
     """
-    name, dimensions, slice_at = _sampled(generator, size, options)
+    name, dimensions, make = _sampled(generator, size, options)
     path = Path(folder) / raw_name(name, dimensions, "float32")
     if path.is_file():
         return path
+    check_output(path, needed=4 * math.prod(dimensions))
     with atomic_path(path) as temporary, open(temporary, "wb") as file:
-        for slab in compute_slabs(slice_at, dimensions):
+        for slab in compute_slabs(make(), dimensions):
             slab.astype("<f4", copy=False).tofile(file)
             if progress is not None:
                 progress(file.tell() / (4 * math.prod(dimensions)))
@@ -158,12 +159,12 @@ def generate_compressed(
         When the size, the rate or an option is unknown or out of range.
     """
     digits = _digits(checked_rate(rate))
-    name, dimensions, slice_at = _sampled(generator, size, options)
+    name, dimensions, make = _sampled(generator, size, options)
     path = Path(folder) / f"{name}_{'x'.join(map(str, dimensions))}_rate{digits}.zfp"
     if not path.is_file():
-        check_output(path)
+        check_output(path, needed=int(checked_rate(rate) / 8 * math.prod(dimensions)))
         volume = compress_slabs(
-            compute_slabs(slice_at, dimensions),
+            compute_slabs(make(), dimensions),
             dimensions,
             rate=rate,
             name=name,
@@ -176,13 +177,14 @@ def generate_compressed(
 
 def _sampled(
     generator: Generator, size: int | Sequence[int], options: dict[str, float]
-) -> tuple[str, tuple[int, int, int], Slices]:
-    """Return a field's name with its options, its dimensions, and what computes its slices."""
+) -> tuple[str, tuple[int, int, int], Callable[[], Slices]]:
+    """Return a field's name with its options, its dimensions, and what makes its slices."""
     dimensions = checked_dimensions(size)
     options = _checked_options(generator, options)
     given = (f"{key}{_digits(v)}" for key, v in sorted(options.items()) if v is not None)
-    axes = [np.linspace(-1, 1, n) for n in dimensions]
-    return "-".join((generator.name, *given)), dimensions, generator.make(axes, **options)
+    name = "-".join((generator.name, *given))
+    axes = (np.linspace(-1, 1, n) for n in dimensions)
+    return name, dimensions, lambda: generator.make(list(axes), **options)
 
 
 def checked_dimensions(size: int | Sequence[int]) -> tuple[int, int, int]:

@@ -12,6 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from .._typing import FilePath
 from ..geometry import axes_of
+from .files import check_bytes
 from .header_text import (
     LONGEST_HEADER,
     checked_geometry,
@@ -236,9 +237,11 @@ def write_metaimage(image: vtkImageData, path: FilePath) -> None:
         "ElementType": _ELEMENT_TYPES[values.dtype.name],
         "ElementDataFile": "LOCAL",
     }
+    text = "".join(f"{key} = {value}\n" for key, value in header.items()).encode()
     with open(path, "wb") as file:
-        file.write("".join(f"{key} = {value}\n" for key, value in header.items()).encode())
+        file.write(text)
         values.astype(values.dtype.newbyteorder("<"), copy=False).tofile(file)
+    check_bytes(Path(path), len(text) + values.nbytes)
 
 
 def _numbers(values: npt.ArrayLike) -> str:

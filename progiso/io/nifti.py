@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import gzip
+import struct
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 
@@ -14,7 +17,9 @@ from vtkmodules.vtkIOImage import vtkNIFTIImageReader, vtkNIFTIImageWriter
 from .._typing import Array, FilePath
 from .._vtk import dimensions_of, place_as_read, vtk_errors
 from ..geometry import axes_of, set_axes
+from .files import DISK_FULL
 from .slab_files import SlabFile, gunzipped, opened_at
+from .vtk_files import write_with
 
 
 def read_nifti(path: FilePath) -> vtkImageData:
@@ -134,6 +139,22 @@ def write_nifti(image: vtkImageData, path: FilePath) -> None:
     writer = vtkNIFTIImageWriter()
     writer.SetInputData(plain)
     writer.SetSFormMatrix(sform)
-    writer.SetFileName(str(path))
-    with vtk_errors(f"cannot write '{path}'"):
-        writer.Write()
+    write_with(writer, Path(path))
+    scalars = plain.GetPointData().GetScalars()
+    _check_written(Path(path), scalars.GetDataTypeSize() * scalars.GetNumberOfValues())
+
+
+def _check_written(path: Path, sample_bytes: int) -> None:
+    """Raise where not all samples have come into a file; VTK does not tell when closing fails."""
+    opened = gzip.open if path.suffix.lower() == ".gz" else open
+    held = 0
+    try:
+        with opened(path, "rb") as file:
+            (header,) = struct.unpack("<i", file.read(4))
+            held = 4
+            while chunk := file.read(2**20):
+                held += len(chunk)
+    except (OSError, EOFError, zlib.error, struct.error) as error:
+        raise RuntimeError(f"cannot write '{path}': {DISK_FULL}") from error
+    if held != header + 4 + sample_bytes:  # 4 bytes tell that there are no extensions
+        raise RuntimeError(f"cannot write '{path}': {DISK_FULL}")

@@ -10,12 +10,17 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import VTK_BIT
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from .._typing import Array, Dimensions, FilePath
+from .files import check_bytes
 from .source import Description, Region, Selection, Source
 
-TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64")
+TYPES = (
+    *("uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64"),
+    *("float32", "float64"),
+)
 
 _NAME = re.compile(
     r"(?P<name>.+)_(?P<x>\d+)x(?P<y>\d+)x(?P<z>\d+)_(?P<type>" + "|".join(TYPES) + r")\.raw",
@@ -128,13 +133,22 @@ def write_raw(image: vtkImageData, path: FilePath) -> None:
     Raises
     ------
     ValueError
-        When the name's dimensions or type differ from the image's.
+        When the name's dimensions or type differ from the image's, or the image's samples have
+        several components, or a type that no raw file holds.
     """
+    scalars = image.GetPointData().GetScalars()
+    name, components = Path(path).name, scalars.GetNumberOfComponents()
+    kind = vtk_to_numpy(scalars).dtype if scalars.GetDataType() != VTK_BIT else np.dtype(bool)
+    if components != 1 or kind.name not in TYPES:
+        held = f"{components} components" if components != 1 else f"type {kind.name}"
+        raise ValueError(
+            f"'{name}': a raw file holds samples of one component, of type {', '.join(TYPES)}; the "
+            f"image's have {held}: write it as .vti"
+        )
     _, dimensions, dtype = parse_raw_name(path)
-    values = vtk_to_numpy(image.GetPointData().GetScalars())
-    same = values.dtype == dtype.newbyteorder("=") and dimensions == image.GetDimensions()
-    if values.ndim != 1 or not same:
-        correct = raw_name("name", image.GetDimensions(), values.dtype)
-        name = Path(path).name
-        raise ValueError(f"'{name}' does not describe the image: call it {correct} (one component)")
-    values.astype(dtype, copy=False).tofile(path)
+    if dimensions != image.GetDimensions() or dtype != kind.newbyteorder("<"):
+        correct = raw_name("name", image.GetDimensions(), kind)
+        raise ValueError(f"'{name}' does not describe the image: call it {correct}")
+    values = vtk_to_numpy(scalars).astype(dtype, copy=False)
+    values.tofile(path)
+    check_bytes(Path(path), values.nbytes)

@@ -9,6 +9,7 @@ from typing import Any
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDataArray
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSetAttributes, vtkImageData
+from vtkmodules.vtkCommonMisc import vtkErrorCode
 from vtkmodules.vtkIOHDF import vtkHDFReader
 from vtkmodules.vtkIOLegacy import vtkDataSetReader
 from vtkmodules.vtkIOXML import (
@@ -21,6 +22,7 @@ from .._typing import Array, Progress
 from .._vtk import observe_progress, vtk_errors
 from ..compression import is_compressed
 from ..geometry import GHOSTS
+from .files import DISK_FULL
 from .images import ImageSource, checked_image, geometry_of, place_as
 from .source import Description, Region, Selection, Source
 
@@ -163,12 +165,35 @@ def _has_raw_appended_data(path: Path) -> bool:
 
 
 def write_with(writer: Any, path: Path) -> None:
-    """Run a VTK writer that reports failure by an error or by returning 0."""
-    with vtk_errors(f"cannot write '{path.name}'"):
-        writer.SetFileName(str(path))
-        written = writer.Write()
-    if not written:
-        raise RuntimeError(f"cannot write '{path.name}'")
+    """Run a VTK writer that reports failure by an error, by returning 0, or by a code alone."""
+    writer.AddObserver("ProgressEvent", lambda *_: None)  # lets Python handle signals meanwhile
+    writer.SetFileName(str(path))
+    failure = f"cannot write '{path}'"
+    try:
+        with vtk_errors(failure):
+            written = writer.Write()
+    except RuntimeError as error:
+        code = writer.GetErrorCode()
+        if code == vtkErrorCode.OutOfDiskSpaceError or str(error).endswith(" failed"):
+            raise RuntimeError(f"{failure}: {_reason(code)}") from error
+        raise
+    if written == 0 or writer.GetErrorCode() or not path.is_file():
+        raise RuntimeError(f"{failure}: {_reason(writer.GetErrorCode())}")
+
+
+def _reason(code: int) -> str:
+    """Say what an error code of VTK means."""
+    if code in (0, vtkErrorCode.OutOfDiskSpaceError):
+        return DISK_FULL
+    return str(vtkErrorCode.GetStringFromErrorCode(code))
+
+
+def check_xml(path: Path) -> None:
+    """Raise `RuntimeError` unless a file of VTK's XML formats ends as one."""
+    with open(path, "rb") as file:
+        file.seek(max(0, path.stat().st_size - 256))
+        if not file.read().rstrip().endswith(b"</VTKFile>"):
+            raise RuntimeError(f"cannot write '{path}': {DISK_FULL}")
 
 
 def write_vti(
@@ -191,3 +216,4 @@ def write_vti(
         writer.SetCompressorTypeToNone()
     observe_progress(writer, progress)
     write_with(writer, path)
+    check_xml(path)

@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ..io.files import atomic_path, check_output
+from ..io.files import atomic_path, check_output, check_outputs
 from ..measure.document import new_document, write_json
 from ..measure.machine import OtherProcesses, describe_machine
 from .case import FAILED, QUICK, Case, Settings
@@ -60,9 +60,9 @@ def _count(text: str) -> int:
 
 
 def _verify(parsed: argparse.Namespace) -> None:
-    for path, suffixes in ((parsed.json, None), (parsed.output, (".md",))):
-        if path is not None:
-            check_output(path, suffixes)
+    check_outputs((parsed.json, parsed.output))
+    if parsed.output is not None:
+        check_output(parsed.output, (".md",))
     listed = cases(parsed.quick, parsed.cases)
     if not listed:
         raise ValueError(f"no case has '{parsed.cases}' in its name")
