@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import glob
 import importlib
 import os
 from collections.abc import Callable
@@ -46,6 +47,7 @@ _NRRD = Format("nrrd", "open_nrrd", "NRRD")
 _LEGACY = Format("legacy", "open_legacy", "medical images")
 _TIFF = Format("tiff", "open_tiff", "TIFF", "tiff")
 _HDF5 = Format("hdf5", "open_hdf5", "HDF5", "hdf5", arrays=True)
+_PICTURE = Format("folders", "open_picture", "pictures", "pictures")
 _ZARR = Format("zarr_files", "open_zarr", "Zarr", "zarr", arrays=True)
 
 #: Formats by suffix, in lower case; the longest that fits is taken.
@@ -76,6 +78,11 @@ FORMATS: dict[str, Format] = {
     ".ims": _HDF5,
     ".nc": _HDF5,
     ".nc4": _HDF5,
+    ".png": _PICTURE,
+    ".jpg": _PICTURE,
+    ".jpeg": _PICTURE,
+    ".bmp": _PICTURE,
+    ".jp2": _PICTURE,
     ".zarr": _ZARR,
     ".zarr.zip": _ZARR,
     ".npy": Format("arrays", "open_npy", "NumPy"),
@@ -87,6 +94,9 @@ OTHER = Format("legacy", "open_other", "other images")
 #: What reads a folder that has none of the suffixes above.
 FOLDER = Format("folders", "open_folder", "folders of DICOM files or numbered slices")
 
+#: What reads files that a pattern of names stands for.
+PATTERN = Format("folders", "open_pattern", "numbered slices")
+
 
 def open_source(path: FilePath, selection: Selection | None = None) -> Source:
     """Open a volume in a file or folder: read its header, and no samples.
@@ -94,7 +104,8 @@ def open_source(path: FilePath, selection: Selection | None = None) -> Source:
     Parameters
     ----------
     path : str or os.PathLike
-        A file or folder of a known format. ``file.h5:/group/array`` names an array inside a file.
+        A file or folder of a known format. ``file.h5:/group/array`` names an array inside a file,
+        ``scan/slice_*.tif`` slices in files of their own.
     selection : Selection, optional
         What of it is wanted, where it holds more than one volume.
 
@@ -108,9 +119,9 @@ def open_source(path: FilePath, selection: Selection | None = None) -> Source:
         When the format needs a package that is not installed; the message names the extra.
     """
     file, selection = _split(path, selection or Selection())
-    if not file.exists():
-        raise FileNotFoundError(f"there is no file '{file}'")
     kind = format_of(file)
+    if kind is not PATTERN and not file.exists():
+        raise FileNotFoundError(f"there is no file '{file}'")
     opener = opener_of(kind, file)
     with reading(file), header_warnings(file):
         source = opener(file, selection)
@@ -139,7 +150,9 @@ def opener_of(kind: Format, path: Path) -> Callable[[Path, Selection], Source]:
 
 
 def format_of(path: Path) -> Format:
-    """Return the format of a file or folder by its name."""
+    """Return the format of a file or folder, or of files that a pattern names."""
+    if glob.has_magic(str(path)) and not path.exists():
+        return PATTERN
     suffix = suffix_of(path)
     if suffix in FORMATS:
         return FORMATS[suffix]

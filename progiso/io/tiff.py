@@ -104,6 +104,23 @@ def open_tiff(path: Path, selection: Selection) -> Source:
     return TiffSource(path, number, level, about, layout, values)
 
 
+def first_page(path: Path) -> tuple[tuple[int, ...], np.dtype[Any], dict[str, Step]]:
+    """Return the shape and type of a file's only page, and the steps that it tells.
+
+    Raises
+    ------
+    ValueError
+        When it has several pages.
+    """
+    with _opened(path) as file:
+        if len(file.pages) != 1:
+            raise ValueError(f"'{path}' has {len(file.pages)} pages, and is no slice")
+        page = file.pages.first
+        planes = page.axes.startswith("S")
+        shape = (*page.shape[1:], page.shape[0]) if planes else page.shape
+        return shape, np.dtype(page.dtype), _metadata(file, 0).get("steps", {})
+
+
 class TiffSource(AxesSource):
     """A series of a TIFF file's pages."""
 
