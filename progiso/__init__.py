@@ -12,6 +12,7 @@ one to a pyvista plotter, and `contour` extracts triangles.
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
 from pkgutil import extend_path
 from typing import Any
@@ -20,7 +21,6 @@ from typing import Any
 # adds the latter's compiled modules. Elsewhere it changes nothing.
 __path__ = extend_path(__path__, __name__)
 
-from ._after_import import after_import  # noqa: E402
 from ._built import VERSION as __version__  # noqa: E402
 from ._built import VTK_VERSION as _VTK_VERSION  # noqa: E402
 
@@ -115,9 +115,10 @@ __all__ = [
     "write_png",
 ]
 
-# pyvista finds `plotter.progiso` by its entry point. pyvistaqt's QtInteractor does not ask pyvista
-# for attributes that it lacks, so the component has to be there before.
-after_import("pyvista", lambda: import_module(f"{__name__}.pyvista.plugin"))
+# pyvista finds `plotter.progiso` by its entry point; pyvistaqt's QtInteractor, which does not ask
+# pyvista for attributes that it lacks, finds it where pyvista was imported before.
+if "pyvista" in sys.modules:
+    import_module(f"{__name__}.pyvista.plugin")
 
 
 def __getattr__(name: str) -> Any:

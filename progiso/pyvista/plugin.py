@@ -1,7 +1,7 @@
 """``plotter.progiso``: isosurfaces in pyvista's plotters.
 
-This module is imported right after pyvista where progiso is imported, too, and else by pyvista,
-through the entry point, when a plotter's ``progiso`` is first used.
+pyvista imports this module by its entry point when a plotter's ``progiso`` is first used; progiso
+does where pyvista is imported already.
 """
 
 from __future__ import annotations
