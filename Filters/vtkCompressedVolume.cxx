@@ -4,6 +4,8 @@
 
 #include "Codec/BitCopy.h"
 #include "Codec/BlockGeometry.h"
+#include "Codec/BlockStream.h"
+#include "Codec/SampleSummary.h"
 #include "Format/CompressedVolumeFormat.h"
 #include "Pieces/PieceExtents.h"
 #include "Status.h"
@@ -266,6 +268,18 @@ void vtkCompressedVolume::SetStream(vtkUnsignedCharArray* stream)
     this->Stream = stream;
     this->Modified();
   }
+}
+
+//------------------------------------------------------------------------------
+bool vtkCompressedVolume::FindDecodedRange(double range[2]) const
+{
+  const auto stream = BlockStream::Align(this->Stream);
+  const BlockStream blocks(this->Dimensions, this->BlockBits, stream->GetPointer(0), 0);
+  SampleSummary summary;
+  blocks.Summarize(summary, [](double) { return true; });
+  range[0] = this->ToSample(summary.Minimum);
+  range[1] = this->ToSample(summary.Maximum);
+  return summary.IsFinite();
 }
 
 //------------------------------------------------------------------------------

@@ -271,6 +271,12 @@ public:
   void SetStream(vtkUnsignedCharArray* stream);
   ///@}
 
+  /**
+   * Decodes all blocks of the stream to find the smallest and largest value, hidden ones included.
+   * False if one is not finite, as in damaged streams.
+   */
+  bool FindDecodedRange(double range[2]) const;
+
   ///@{
   /**
    * Whether what Read() has read has checksums, with which it agrees; files of versions before 3

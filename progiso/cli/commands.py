@@ -24,7 +24,7 @@ from ..io.files import atomic_path, check_output, check_outputs
 from ..io.volumes import COMPRESSED_SUFFIXES, PLAIN_SUFFIXES, compress_source
 from ..mesh import SURFACE_SUFFIXES
 from ..options import CompressionOptions, RenderOptions, SurfaceStyle
-from .info import describe_source, file_bytes
+from .info import describe_source, file_bytes, verify_source
 from .progress import progress_bar
 
 
@@ -143,6 +143,8 @@ def info(parsed: argparse.Namespace) -> None:
             "file bytes": file_bytes(Path(source.about.what)),
             **describe_source(source, progress),
         }
+        if parsed.verify:
+            about["verified"] = verify_source(source, Path(source.about.what))
     if parsed.json:
         print(json.dumps(about, indent=2))
         return

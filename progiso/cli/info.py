@@ -13,6 +13,8 @@ import progiso
 
 from .._typing import Progress
 from ..io import Source
+from ..io.footer import check_footer
+from ..vtkProgIsoFilters import vtkCompressedVolume
 
 
 def describe_source(source: Source, progress: Progress | None) -> dict[str, Any]:
@@ -28,6 +30,43 @@ def describe_source(source: Source, progress: Progress | None) -> dict[str, Any]
     about = describe_image(image)
     about["point arrays"] = {source.about.name: _describe_samples(source, progress)}
     return {**about, **_describe_header(source)}
+
+
+def verify_source(source: Source, path: Path) -> dict[str, str]:
+    """Check all that a file's checksums cover, and decode or read everything else.
+
+    Returns
+    -------
+    dict of str to str
+        What was checked, and how.
+
+    Raises
+    ------
+    ValueError
+        When something is damaged; the message names the place.
+    """
+    facts = {}
+    if path.suffix.lower() == ".vti":
+        has_line = check_footer(path)
+        size = path.stat().st_size
+        facts["file"] = (
+            f"{size} bytes match their checksums" if has_line else "has no checksums of its own"
+        )
+    image = source.image() if source.more_than_samples else None
+    if image is None or not progiso.is_compressed(image):
+        facts["samples"] = "all were read; they have no checksums"
+        return facts
+    volume, decoded = vtkCompressedVolume(), [0.0, 0.0]
+    if not volume.Read(image):
+        raise ValueError(f"'{path}' is {volume.GetErrorMessage()}")
+    if not volume.FindDecodedRange(decoded):
+        raise ValueError(f"'{path}' is damaged: blocks decode to values that are not finite")
+    pages = -(-volume.GetStream().GetNumberOfValues() // volume.PageBytes)
+    checked = volume.GetHasChecksums() and path.suffix.lower() != ".zfp"
+    facts["stream"] = f"{pages} pages match their checksums" if checked else "has no checksums"
+    low, high = decoded
+    facts["blocks"] = f"{volume.GetNumberOfBlocks()} decode to values from {low:.9g} to {high:.9g}"
+    return facts
 
 
 def describe_image(image: vtkImageData) -> dict[str, Any]:

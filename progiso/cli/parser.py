@@ -166,6 +166,10 @@ def _add_info(subparsers: _Subparsers) -> None:
     command = _add_command(subparsers, "info", commands.info, "tell what a volume holds")
     _add_input(command)
     command.add_argument("--json", action="store_true", help="as JSON")
+    command.add_argument(
+        "--verify", action="store_true",
+        help="check all checksums and decode all blocks; exit status 1 where a file is damaged",
+    )  # fmt: skip
 
 
 def _add_contour(subparsers: _Subparsers) -> None:

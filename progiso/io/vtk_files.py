@@ -23,6 +23,7 @@ from .._vtk import observe_progress, vtk_errors
 from ..compression import is_compressed
 from ..geometry import GHOSTS
 from .files import DISK_FULL
+from .footer import add_footer, check_footer
 from .images import ImageSource, checked_image, geometry_of, place_as
 from .source import Description, Region, Selection, Source
 
@@ -43,6 +44,8 @@ def open_vtk(path: Path, selection: Selection) -> Source:
     active, and nothing is hidden; what else they hold comes with the whole image. ``.vtk`` is read
     whole, as VTK does.
     """
+    if path.suffix.lower() in (".vti", ".pvti"):
+        check_footer(path)
     make = _BY_EXTENT.get(path.suffix.lower())
     if make is None:
         return ImageSource(path, read_with(vtkDataSetReader(), path), selection.array)
@@ -217,3 +220,4 @@ def write_vti(
     observe_progress(writer, progress)
     write_with(writer, path)
     check_xml(path)
+    add_footer(path)
