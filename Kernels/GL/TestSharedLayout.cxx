@@ -346,7 +346,7 @@ TEST_F(SharedLayout, StorageBuffersLieAsInCxx)
 TEST_F(SharedLayout, MacrocellsWithoutACacheAreAsLargeAsTheTableSays)
 {
   const SceneNeeds needs = EverythingNeeded(false);
-  const GLuint program = this->Build(needs)["CastRays"];
+  const GLuint program = this->Build(needs)["BlockRanges"];
   const GLuint ranges =
     glGetProgramResourceIndex(program, GL_BUFFER_VARIABLE, "macrocells[0].Ranges[0]");
   const std::vector<GLint> answers =

@@ -111,6 +111,7 @@ Status ProgressivePipeline::LoadVolume()
   this->Gpu->Timer.Forget();
   this->VolumeLoaded = false;
   this->VolumePrepared = false;
+  this->MarkedIsovalues.clear();
   Status status = this->Gpu->Buffers.Allocate(Lifetime::Volume, this->Needs);
   if (status && !this->Needs.Cached)
   {
@@ -469,6 +470,7 @@ void ProgressivePipeline::UpdateNeeds(const PipelineScene& scene)
   }
   this->ImagePixels = static_cast<std::int64_t>(view.ImageSize[0]) * view.ImageSize[1];
   this->ViewportPixels = static_cast<std::int64_t>(view.ViewportSize[0]) * view.ViewportSize[1];
+  this->Isovalues.assign(view.Isovalues, view.Isovalues + view.NumberOfIsovalues);
   this->Needs.Detailed = this->Settings.Detailed;
   this->Needs.Lit = scene.Look.NumberOfLights > 0;
   this->Needs.Translucent = scene.Translucent;
@@ -578,6 +580,7 @@ void ProgressivePipeline::Start()
     this->SinceImage = Stopwatch();
     return;
   }
+  this->MarkBlocks();
   this->ClearImage();
   const std::uint32_t yes = 1;
   this->Gpu->Transfer.Write(this->Gpu->Buffers.GetName(Buffer::Control),
@@ -585,6 +588,20 @@ void ProgressivePipeline::Start()
   if (this->CheckMemory()) // else the stages may never come to an end
   {
     this->Gpu->Dispatch(Stage::PlanPass, 1);
+  }
+}
+
+// Most images have the isovalues of the last.
+void ProgressivePipeline::MarkBlocks()
+{
+  const auto same = [](const glsl::FloatSum& a, const glsl::FloatSum& b)
+  { return a.High == b.High && a.Low == b.Low; };
+  if (!std::equal(this->Isovalues.begin(), this->Isovalues.end(), this->MarkedIsovalues.begin(),
+        this->MarkedIsovalues.end(), same))
+  {
+    this->Gpu->Dispatch(Stage::MarkBlocks,
+      std::min(GroupsFor(Stage::MarkBlocks, this->Needs.Macrocells), MaximumResetGroups));
+    this->MarkedIsovalues = this->Isovalues;
   }
 }
 

@@ -142,6 +142,7 @@ private:
   std::uint32_t ChoosePixelsPerStraggler();
   void UseReadyPrograms();
   bool AwaitsPrograms();
+  void MarkBlocks();
   void ClearImage();
   void RunPass();
   void RunStage(Stage stage);
@@ -157,6 +158,9 @@ private:
   PipelineSettings Settings;
   SceneNeeds Needs; ///< of the scene, which the GPU's buffers are made for
   glsl::Cache Cache = {};
+  ///@{ Of the scene, and those that blocks are marked for.
+  std::vector<glsl::FloatSum> Isovalues, MarkedIsovalues;
+  ///@}
   std::int32_t ImagePlace[4] = { 0, 0, 0, 0 }; ///< width, height and origin in the window
   std::int64_t ImagePixels = 0;
   std::int64_t ViewportPixels = 0;

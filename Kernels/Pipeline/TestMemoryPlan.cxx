@@ -297,7 +297,8 @@ TEST(MemoryPlan, MacrocellsMustFitOneBuffer)
 {
   const SceneNeeds scene = Scene(1024);
   DeviceLimits limits = Limits();
-  limits.LargestBuffer = BytesOf(Lifetime::Volume, scene);
+  limits.LargestBuffer =
+    PipelineBuffers()[static_cast<std::size_t>(Buffer::Macrocells)].Bytes(scene);
   EXPECT_TRUE(CheckSizes(limits, scene));
   --limits.LargestBuffer;
   const Status status = CheckSizes(limits, scene);

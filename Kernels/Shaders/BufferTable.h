@@ -19,6 +19,7 @@ enum class Buffer
   Stream,
   ColorStream,
   Macrocells,
+  BlockMarks,
   HiddenCells,
   Hits,
   Normals,

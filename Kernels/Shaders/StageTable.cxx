@@ -12,8 +12,8 @@ const std::vector<StageInfo>& PipelineStages()
   using namespace Conditions;
   using B = Buffer;
   constexpr Access R = Access::Read, W = Access::Write, RW = Access::ReadWrite;
-  constexpr Moment Volume = Moment::Volume, Cache = Moment::Cache, Growth = Moment::Growth,
-                   Pass = Moment::Pass, Drawing = Moment::Drawing;
+  constexpr Moment Volume = Moment::Volume, Isovalues = Moment::Isovalues, Cache = Moment::Cache,
+                   Growth = Moment::Growth, Pass = Moment::Pass, Drawing = Moment::Drawing;
   constexpr Urgency AtOnce = Urgency::AtOnce, Soon = Urgency::Soon, OnDemand = Urgency::OnDemand;
   // clang-format off
   static const std::vector<StageInfo> stages = {
@@ -22,6 +22,10 @@ const std::vector<StageInfo>& PipelineStages()
       AtOnce, OneGroup,
       { { Volume, Always } },
       { { B::Macrocells, W }, { B::HiddenCells, R }, { B::CacheValues, R } } },
+    { Stage::MarkBlocks, "MarkBlocks", "Rays/MarkBlocks.comp", 64,
+      AtOnce, OneGroup,
+      { { Isovalues, Always } },
+      { { B::Macrocells, R }, { B::BlockMarks, W } } },
     { Stage::PlanPass, "PlanPass", "Rays/PlanPass.comp", 1,
       AtOnce, OneGroup,
       { { Pass, Always } },
@@ -49,13 +53,15 @@ const std::vector<StageInfo>& PipelineStages()
     { Stage::CastRays, "CastRays", "Rays/CastRays.comp", 32,
       AtOnce, offsetof(glsl::Control, CastGroups),
       { { Pass, Always } },
-      { { B::Control, RW }, { B::Macrocells, R }, { B::CacheMap, RW }, { B::CacheValues, R },
-        { B::Hits, RW }, { B::Rays, RW }, { B::CacheSeen, RW } } },
+      { { B::Control, RW }, { B::Macrocells, R, Cached }, { B::BlockMarks, R },
+        { B::CacheMap, RW }, { B::CacheValues, R }, { B::Hits, RW }, { B::Rays, RW },
+        { B::CacheSeen, RW } } },
     { Stage::CastStragglers, "CastStragglers", "Rays/CastStragglers.comp", 32,
       Soon, offsetof(glsl::Control, StragglerGroups),
       { { Pass, SeveralPasses } },
-      { { B::Control, RW }, { B::Macrocells, R }, { B::CacheMap, RW }, { B::CacheValues, R },
-        { B::Hits, RW }, { B::Rays, RW }, { B::CacheSeen, RW } } },
+      { { B::Control, RW }, { B::Macrocells, R, Cached }, { B::BlockMarks, R },
+        { B::CacheMap, RW }, { B::CacheValues, R }, { B::Hits, RW }, { B::Rays, RW },
+        { B::CacheSeen, RW } } },
     { Stage::FinishHits, "FinishHits", "Surface/FinishHits.comp", 64,
       AtOnce, offsetof(glsl::Control, FinishGroups),
       { { Pass, FinishedHits } },
@@ -65,8 +71,8 @@ const std::vector<StageInfo>& PipelineStages()
     { Stage::RequestBlocks, "RequestBlocks", "Cache/RequestBlocks.comp", 64,
       AtOnce, offsetof(glsl::Control, RequestGroups),
       { { Pass, Cached } },
-      { { B::Control, RW }, { B::Macrocells, RW }, { B::CacheMap, RW }, { B::CacheRequests, W },
-        { B::Hits, R }, { B::Rays, R } } },
+      { { B::Control, RW }, { B::Macrocells, RW }, { B::BlockMarks, R }, { B::CacheMap, RW },
+        { B::CacheRequests, W }, { B::Hits, R }, { B::Rays, R } } },
     { Stage::DecodeBlocks, "DecodeBlocks", "Store/DecodeBlocks.comp", 32,
       AtOnce, offsetof(glsl::Control, DecodeGroups),
       { { Volume, Always }, { Pass, Cached } },

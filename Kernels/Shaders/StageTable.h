@@ -14,6 +14,7 @@
 enum class Stage
 {
   BlockRanges,
+  MarkBlocks,
   PlanPass,
   CacheReset,
   CacheUnwind,
@@ -35,11 +36,12 @@ constexpr int NumberOfStages = static_cast<int>(Stage::NumberOfStages);
 /// When a stage runs.
 enum class Moment
 {
-  Volume, ///< once, when a volume is loaded
-  Cache,  ///< when the cache is made
-  Growth, ///< when it grows
-  Pass,   ///< in every pass
-  Drawing ///< into the window
+  Volume,    ///< once, when a volume is loaded
+  Isovalues, ///< when they, or the volume, have changed
+  Cache,     ///< when the cache is made
+  Growth,    ///< when it grows
+  Pass,      ///< in every pass
+  Drawing    ///< into the window
 };
 
 struct StageRun

@@ -100,8 +100,8 @@ std::string BuffersOf(const StageInfo& stage, bool (*uses)(Access))
 
 std::string RunsOf(const StageInfo& stage)
 {
-  const char* moments[] = { "once a volume", "when the cache is made", "when it grows",
-    "every pass", "to draw" };
+  const char* moments[] = { "once a volume", "when isovalues change", "when the cache is made",
+    "when it grows", "every pass", "to draw" };
   std::vector<std::string> runs;
   for (const StageRun& run : stage.Runs)
   {

@@ -62,9 +62,8 @@ uint SlotBeside(bool reached, uvec3 macrocell, uvec3 local)
     : 0u;
 }
 
-// Finds the slots of the blocks from `first` to first + reach, a component 0 or 1. Returns a bit
-// for each that is missing.
-uint FindSlots(ivec3 first, ivec3 reach)
+// Finds the slots of the blocks from `first` to first + reach, a component 0 or 1.
+void FindSlots(ivec3 first, ivec3 reach)
 {
   PlaceInMap near = PlaceOf(first), far = PlaceOf(first + 1);
   uvec3 m = near.Macrocell, n = far.Macrocell;
@@ -78,6 +77,17 @@ uint FindSlots(ivec3 first, ivec3 reach)
   highSlots.y = SlotBeside(r.x && r.z, uvec3(n.x, m.y, n.z), uvec3(k.x, l.y, k.z));
   highSlots.z = SlotBeside(r.y && r.z, uvec3(m.x, n.yz), uvec3(l.x, k.yz));
   highSlots.w = SlotBeside(all(r), n, k);
+}
+
+// Did the last search miss a block?
+bool LacksSlots()
+{
+  return any(equal(lowSlots, uvec4(NONE))) || any(equal(highSlots, uvec4(NONE)));
+}
+
+// A bit for each block that it missed.
+uint MissingSlots()
+{
   uvec4 low = uvec4(equal(lowSlots, uvec4(NONE))) << uvec4(0u, 1u, 2u, 3u);
   uvec4 high = uvec4(equal(highSlots, uvec4(NONE))) << uvec4(4u, 5u, 6u, 7u);
   return low.x | low.y | low.z | low.w | high.x | high.y | high.z | high.w;
@@ -159,14 +169,15 @@ void UsePage(ivec3 macrocell)
 // Marks the pages of the blocks from `first` to first + reach as used.
 void UsePages(ivec3 first, ivec3 reach)
 {
-  ivec3 across = MacrocellOf(first + reach) - MacrocellOf(first);
-  UsePage(MacrocellOf(first));
-  for (int i = 1; i < 8 && across != ivec3(0); ++i)
+  ivec3 macrocell = MacrocellOf(first);
+  ivec3 across = MacrocellOf(first + reach) - macrocell;
+  // the macrocells beside it, a bit each, x fastest; a loop over them all would be unrolled
+  uint beside = 1u | uint(across.x) << 1u;
+  beside |= across.y != 0 ? beside << 2u : 0u;
+  beside |= across.z != 0 ? beside << 4u : 0u;
+  for (; beside != 0u; beside &= beside - 1u)
   {
-    if (all(lessThanEqual(SideOffset(i), across)))
-    {
-      UsePage(MacrocellOf(first) + SideOffset(i));
-    }
+    UsePage(macrocell + SideOffset(findLSB(beside)));
   }
 }
 

@@ -15,7 +15,14 @@ uint SlotOf(ivec3 block)
   return BlockIndex(block);
 }
 
-uint FindSlots(ivec3 first, ivec3 reach)
+void FindSlots(ivec3 first, ivec3 reach) {}
+
+bool LacksSlots()
+{
+  return false;
+}
+
+uint MissingSlots()
 {
   return 0u;
 }

@@ -18,18 +18,13 @@ shared uint aheadCount;
 void LookAhead(uint pixel, uint speculation)
 {
   Ray ray = CameraRay(pixel);
-  ivec3 block = BlockCoordinates(BlockOfRay(pixel));
+  GridPlace place = PlaceIn(ray, BlockCoordinates(BlockOfRay(pixel)));
   GridCursor at = OutsideGrid();
-  for (uint i = 0u; i < speculation && FindActiveBlock(ray, block, at); ++i)
+  for (uint i = 0u; i < speculation && FindActiveBlock(ray, i > 0u, place, at); ++i)
   {
-    BlockCrossing crossing = CrossBlock(ray, block);
-    ivec3 reach = DualGridReach(ray, block, crossing.Enter, crossing.Leave, crossing.Exits);
+    ivec3 reach = DualGridReach(ray, place, CrossBlock(ray, place));
     ahead[atomicAdd(aheadCount, 1u)] =
-      uvec2(BlockIndex(block), reach.x + 2 * reach.y + 4 * reach.z);
-    if (!NextBlock(ray, block))
-    {
-      break;
-    }
+      uvec2(BlockIndex(place.Block), reach.x + 2 * reach.y + 4 * reach.z);
   }
 }
 

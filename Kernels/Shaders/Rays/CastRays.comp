@@ -19,25 +19,25 @@
 #define WAITS 1u // for blocks
 #define HIT 2u
 
-// Walks from `block` to the first hit. Returns true if the ray has to wait for the block that it
+// Walks on from a place to the first hit. Returns true if the ray has to wait for the block that it
 // has come to.
-bool FindHit(Ray ray, inout ivec3 block, out Hit hit)
+bool FindHit(Ray ray, inout GridPlace place, out Hit hit)
 {
   hit = MISS;
+  bool waits = false;
+  bool leaves = false;
   GridCursor at = OutsideGrid();
-  while (FindActiveBlock(ray, block, at))
+  while (!waits && hit.Key == NO_HIT && FindActiveBlock(ray, leaves, place, at))
   {
-    BlockVisit visit = PlanVisit(ray, block);
-    if (LacksBlocks(block, visit))
+    BlockVisit visit = PlanVisit(ray, place);
+    waits = LacksBlocks(place.Block, visit);
+    if (!waits)
     {
-      return true;
+      VisitBlock(ray, place, visit, hit);
     }
-    if (VisitBlock(ray, block, visit, hit) || !NextBlock(ray, block))
-    {
-      return false;
-    }
+    leaves = true;
   }
-  return false;
+  return waits;
 }
 
 uint CastRay(uint pixel, bool isNew)
@@ -48,10 +48,15 @@ uint CastRay(uint pixel, bool isNew)
     return DONE;
   }
   atomicAdd(groupActiveRays, 1u);
-  ivec3 block = isNew ? FirstBlock(ray) : BlockCoordinates(BlockOfRay(pixel));
+  GridPlace place =
+    PlaceIn(ray, isNew ? BlockOf(ray.FirstCell) : BlockCoordinates(BlockOfRay(pixel)));
+  if (isNew)
+  {
+    EnterGrid(ray, place);
+  }
   PassLastHit(pixel);
   Hit hit;
-  bool waits = FindHit(ray, block, hit);
+  bool waits = FindHit(ray, place, hit);
   bool isHit = hit.Key != NO_HIT;
   if (isHit)
   {
@@ -59,7 +64,7 @@ uint CastRay(uint pixel, bool isNew)
   }
   if (waits || (isHit && RAYS_CONTINUE))
   {
-    StoreBlockOfRay(pixel, BlockIndex(block));
+    StoreBlockOfRay(pixel, BlockIndex(place.Block));
   }
   return waits ? WAITS : isHit ? HIT : DONE;
 }
@@ -83,7 +88,7 @@ void ReservePlaces()
 }
 
 // Queues the work group's rays that wait for the next pass, and its hits to be finished.
-void QueueRays(uint state, uint pixel)
+void QueueRays(uint state, uint pixel, uint order)
 {
   OpenGroupList(NEXT_RAYS);
   OpenGroupList(HITS);
@@ -96,7 +101,7 @@ void QueueRays(uint state, uint pixel)
   if (state == WAITS)
   {
     place = AddToGroupList(NEXT_RAYS);
-    atomicMin(groupFirstLive, TileOrderOf(pixel));
+    atomicMin(groupFirstLive, order);
   }
 #ifdef HAS_PENDING_HITS
   place = state == HIT ? AddToGroupList(HITS) : place;
@@ -123,16 +128,26 @@ void main()
   barrier();
   uint index = GROUP_SIZE * FoldedGroup() + gl_LocalInvocationIndex;
   uint pixel = NONE;
+  uint order = NONE;
   uint state = DONE;
   if (index < control.Rays)
   {
     bool isNew = index >= BegunRays();
-    pixel = isNew ? PixelInTileOrder(control.FirstNewRay + index - BegunRays()) : BegunRay(index);
-    bool waits = !isNew && pixel != NONE && BehindFrontier(pixel);
+    if (isNew)
+    {
+      order = control.FirstNewRay + index - BegunRays();
+      pixel = PixelInTileOrder(order);
+    }
+    else
+    {
+      pixel = BegunRay(index);
+      order = TileOrderOf(pixel); // of no use where there is no pixel
+    }
+    bool waits = !isNew && pixel != NONE && IsOrderBehindFrontier(order);
     state = waits ? WAITS : pixel != NONE ? CastRay(pixel, isNew) : DONE;
   }
   CloseWorkCounters();
 #ifdef HAS_RAYS
-  QueueRays(state, pixel);
+  QueueRays(state, pixel, order);
 #endif
 }

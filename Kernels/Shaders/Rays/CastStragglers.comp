@@ -16,21 +16,23 @@
 shared uint firstMissing;
 shared uint firstHit;
 
-// Gives lane i the i-th active block from `block` on, if there is one; false for the lanes behind
-// the last. The whole group walks together, and `inside` tells whether there is more.
-bool TakeBlock(Ray ray, inout ivec3 block, inout GridCursor at, inout bool inside, out ivec3 taken)
+// Gives lane i the i-th active block from a place on, if there is one; false for the lanes behind
+// the last. The whole group walks together, and `inside` tells whether there may be more. `leaves`:
+// the first place has been taken.
+bool TakeBlock(Ray ray, inout bool leaves, inout GridPlace place, inout GridCursor at,
+  inout bool inside, out GridPlace taken)
 {
   bool took = false;
-  taken = block;
+  taken = place;
   for (uint i = 0u; i < GROUP_SIZE && inside; ++i)
   {
-    inside = FindActiveBlock(ray, block, at);
+    inside = FindActiveBlock(ray, leaves, place, at);
+    leaves = true;
     if (inside && i == gl_LocalInvocationIndex)
     {
-      taken = block;
+      taken = place;
       took = true;
     }
-    inside = inside && NextBlock(ray, block);
   }
   return took;
 }
@@ -53,33 +55,34 @@ bool CastRay(uint pixel)
 {
   uint lane = gl_LocalInvocationIndex;
   Ray ray = CameraRay(pixel);
-  ivec3 next = BlockCoordinates(BlockOfRay(pixel));
+  GridPlace next = PlaceIn(ray, BlockCoordinates(BlockOfRay(pixel)));
   PassLastHit(pixel);
   GridCursor at = OutsideGrid();
+  bool leaves = false;
   bool inside = true;
   while (inside)
   {
-    ivec3 block;
-    bool took = TakeBlock(ray, next, at, inside, block);
-    BlockVisit visit = PlanVisit(ray, block);
-    if (took && LacksBlocks(block, visit))
+    GridPlace place;
+    bool took = TakeBlock(ray, leaves, next, at, inside, place);
+    BlockVisit visit = PlanVisit(ray, place);
+    if (took && LacksBlocks(place.Block, visit))
     {
       atomicMin(firstMissing, lane);
     }
     barrier();
     Hit hit = MISS;
-    if (took && lane < firstMissing && VisitBlock(ray, block, visit, hit))
+    if (took && lane < firstMissing && VisitBlock(ray, place, visit, hit))
     {
       atomicMin(firstHit, lane);
     }
     barrier();
     if (firstHit == lane)
     {
-      KeepHit(ray, pixel, block, hit);
+      KeepHit(ray, pixel, place.Block, hit);
     }
     else if (firstHit == GROUP_SIZE && firstMissing == lane)
     {
-      StoreBlockOfRay(pixel, BlockIndex(block));
+      StoreBlockOfRay(pixel, BlockIndex(place.Block));
     }
     if (firstHit < GROUP_SIZE || firstMissing < GROUP_SIZE)
     {
@@ -109,14 +112,15 @@ void main()
   {
     return;
   }
-  bool behind = BehindFrontier(pixel);
+  uint order = TileOrderOf(pixel);
+  bool behind = IsOrderBehindFrontier(order);
   bool live = behind || CastRay(pixel);
   if (gl_LocalInvocationIndex == 0u)
   {
     groupActiveRays = behind ? 0u : 1u;
     if (live)
     {
-      StoreNextRay(ReserveNextRays(1u, TileOrderOf(pixel)), pixel);
+      StoreNextRay(ReserveNextRays(1u, order), pixel);
     }
   }
   barrier();

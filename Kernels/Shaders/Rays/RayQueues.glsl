@@ -68,10 +68,15 @@ uint BegunRay(uint index)
 #endif
 }
 
-// Has the cache no room for this pixel's ray in this pass?
+// Has the cache no room for the ray of this pixel, by its tile order, in this pass?
+bool IsOrderBehindFrontier(uint order)
+{
+  return control.Frontier < PixelsInTiles() && order >= control.Frontier;
+}
+
 bool BehindFrontier(uint pixel)
 {
-  return control.Frontier < PixelsInTiles() && TileOrderOf(pixel) >= control.Frontier;
+  return IsOrderBehindFrontier(TileOrderOf(pixel));
 }
 
 // Rays that a group of RequestBlocks takes at a time, of which each looks so many blocks ahead.
@@ -148,7 +153,7 @@ uint BlockOfRay(uint pixel)
   return NONE;
 }
 
-bool BehindFrontier(uint pixel)
+bool IsOrderBehindFrontier(uint order)
 {
   return false;
 }

@@ -1,7 +1,7 @@
-// Walks a ray over macrocells and their blocks, after Amanatides and Woo, to the next block whose
-// range of values holds an isovalue. At parameter t a ray has crossed every plane whose parameter
-// is not greater. Stepping to the next block, skipping a macrocell and starting inside the volume
-// all obey this one rule and therefore agree.
+// Walks a ray over macrocells and their blocks, after Amanatides and Woo, to the next block that is
+// marked as active: its range of values holds an isovalue. At parameter t a ray has crossed every
+// plane whose parameter is not greater. Stepping to the next block, skipping a macrocell and
+// starting inside the volume all obey this one rule and therefore agree.
 
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
@@ -14,105 +14,77 @@ ivec3 LastCellBlock()
   return (volume.Samples - 2) / BLOCK_SIDE;
 }
 
-// Planes through which a ray enters an element of a grid whose elements have `side` cells.
-ivec3 EntryPlanes(Ray ray, ivec3 element, int side)
-{
-  return (element + (1 - ray.Step) / 2) * side;
-}
-
+// Planes through which a ray leaves an element of a grid whose elements have `side` cells.
 ivec3 ExitPlanes(Ray ray, ivec3 element, int side)
 {
-  return (element + (1 + ray.Step) / 2) * side;
+  return (element + 1 + IsBackwards(ray)) * side;
 }
 
-// Parameters between which a ray is in a block, and of the planes through which it leaves it.
-struct BlockCrossing
+// Where a ray is in the grid: the block, and parameters of the planes through which it leaves it.
+struct GridPlace
 {
-  Wide Enter, Leave;
+  ivec3 Block;
   Wide3 Exits;
 };
 
-BlockCrossing CrossBlock(Ray ray, ivec3 block)
+GridPlace PlaceIn(Ray ray, ivec3 block)
 {
-  Wide3 exits = PlanesT(ray, ExitPlanes(ray, block, BLOCK_SIDE));
-  Wide3 entries = Difference(exits, Doubled(ray.Spacing, BLOCK_SIDE_LOG2));
+  return GridPlace(block, PlanesT(ray, ExitPlanes(ray, block, BLOCK_SIDE)));
+}
+
+// Moves an element by a step on the axes that `crossed`, a component -1 or 0, tells; `exits` are
+// parameters of the planes through which the ray leaves it, and gain `spacing`.
+void CrossPlanes(
+  ivec3 step, Wide3 spacing, ivec3 crossed, inout ivec3 element, inout Wide3 exits)
+{
+  element += step & crossed;
+  exits = Sum(exits, Wide3(spacing.High & crossed, spacing.Low & uvec3(crossed)));
+}
+
+// Moves an element over those of the next three planes on each axis that the ray meets up to
+// parameter t: two steps, of two planes and of one.
+void CrossThreePlanes(Ray ray, Wide3 spacing, Wide t, inout ivec3 element, inout Wide3 exits)
+{
+  ivec3 two = AreReached(Sum(exits, spacing), t);
+  CrossPlanes(2 * ray.Step, Doubled(spacing, 1), two, element, exits);
+  CrossPlanes(ray.Step, spacing, AreReached(exits, t), element, exits);
+}
+
+Wide3 BlockSpacing(Ray ray)
+{
+  return Doubled(ray.Spacing, BLOCK_SIDE_LOG2);
+}
+
+// Parameters between which a ray is in a block.
+struct BlockCrossing
+{
+  Wide Enter, Leave;
+};
+
+BlockCrossing CrossBlock(Ray ray, GridPlace place)
+{
+  Wide3 entries = Difference(place.Exits, BlockSpacing(ray));
   return BlockCrossing(LargerOf(ray.Enter, LargestOf(entries)),
-    SmallerOf(ray.Leave, SmallestOf(exits)), exits);
+    SmallerOf(ray.Leave, SmallestOf(place.Exits)));
 }
 
-// Tells whether a range has a value below the isovalue and one that is not.
-bool StraddlesIsovalue(float low, float high, int number)
+// Where a ray enters the volume: it may enter its first cell's block where it leaves it.
+void EnterGrid(Ray ray, inout GridPlace place)
 {
-  FloatSum isovalue = view.Isovalues[number];
-  precise float below = (low - isovalue.High) - isovalue.Low;
-  precise float above = (high - isovalue.High) - isovalue.Low;
-  return below < 0.0 && above >= 0.0;
+  ivec3 next = place.Block + ray.Step;
+  ivec3 within = ivec3(lessThanEqual(uvec3(next), uvec3(LastCellBlock())));
+  CrossPlanes(ray.Step, BlockSpacing(ray), AreReached(place.Exits, ray.Enter) & -within,
+    place.Block, place.Exits);
 }
 
-bool StraddlesAnyIsovalue(float low, float high)
+// Parameters of the planes through which a ray leaves the next larger element: up to `mask`, three,
+// blocks further; or the block itself, if `mask` is 0.
+Wide3 ExitsBehind(Ray ray, GridPlace place, int mask)
 {
-#ifdef SEVERAL_ISOVALUES
-  for (int i = 0; i < view.NumberOfIsovalues; ++i)
-  {
-    if (StraddlesIsovalue(low, high, i))
-    {
-      return true;
-    }
-  }
-  return false;
-#else
-  return StraddlesIsovalue(low, high, 0);
-#endif
-}
-
-// The step to the next block on each axis on which the ray leaves this one by parameter t.
-ivec3 StepBy(Ray ray, ivec3 block, Wide t)
-{
-  return NotGreater(PlanesT(ray, ExitPlanes(ray, block, BLOCK_SIDE)), t) * ray.Step;
-}
-
-// The block in which the ray enters the volume.
-ivec3 FirstBlock(Ray ray)
-{
-  ivec3 block = BlockOf(ray.FirstCell);
-  return clamp(block + StepBy(ray, block, ray.Enter), ivec3(0), LastCellBlock());
-}
-
-// Moves to the next block on the ray; false if the ray leaves the volume.
-bool NextBlock(Ray ray, inout ivec3 block)
-{
-  Wide3 exits = PlanesT(ray, ExitPlanes(ray, block, BLOCK_SIDE));
-  Wide t = SmallestOf(exits);
-  if (!IsLess(t, ray.Leave))
-  {
-    return false;
-  }
-  block += NotGreater(exits, t) * ray.Step;
-  return InGrid(block);
-}
-
-// Moves to the first block behind the macrocell that holds `block`; false if the ray leaves the
-// volume.
-bool SkipMacrocell(Ray ray, inout ivec3 block)
-{
-  ivec3 macrocell = MacrocellOf(block);
-  Wide3 exits = PlanesT(ray, ExitPlanes(ray, macrocell, BLOCK_SIDE * MACROCELL_SIDE));
-  Wide t = SmallestOf(exits);
-  if (!IsLess(t, ray.Leave))
-  {
-    return false;
-  }
-  ivec3 within = block;
-  Wide3 planes = PlanesT(ray, ExitPlanes(ray, block, BLOCK_SIDE));
-  for (int i = 1; i < MACROCELL_SIDE; ++i)
-  {
-    within += NotGreater(planes, t) * ray.Step;
-    planes = Sum(planes, Doubled(ray.Spacing, BLOCK_SIDE_LOG2));
-  }
-  // on the axes on which the ray leaves the macrocell: the block just behind it
-  ivec3 behind = MACROCELL_SIDE * macrocell - 1 + (MACROCELL_SIDE + 1) * (1 + ray.Step) / 2;
-  block = within + (behind - within) * NotGreater(exits, t);
-  return InGrid(block);
+  ivec3 ahead = (place.Block ^ ~IsBackwards(ray)) & mask;
+  Wide3 one = BlockSpacing(ray);
+  Wide3 exits = Choose(place.Exits, Sum(place.Exits, one), -(ahead & 1));
+  return Choose(exits, Sum(exits, Doubled(one, 1)), -(ahead >> 1));
 }
 
 #ifdef CROPPED
@@ -144,26 +116,16 @@ bool IsCroppedAway(ivec3 block)
 }
 #endif
 
-// The macrocell that a ray is in, so that its record is read once.
+// The macrocell that a ray is in, so that its marks are read once: a bit for each of its blocks.
 struct GridCursor
 {
-  ivec3 Coordinates;
-  uint Index;
-  vec2 Range;
-  bool Active; // the range holds an isovalue
+  ivec3 Macrocell;
+  uvec2 Marks;
 };
 
 GridCursor OutsideGrid()
 {
-  return GridCursor(ivec3(-1), 0u, vec2(0.0), false);
-}
-
-void MoveCursor(inout GridCursor at, ivec3 macrocell)
-{
-  at.Coordinates = macrocell;
-  at.Index = MacrocellIndex(macrocell);
-  at.Range = vec2(macrocells[at.Index].Low, macrocells[at.Index].High);
-  at.Active = StraddlesAnyIsovalue(at.Range.x, at.Range.y);
+  return GridCursor(ivec3(-1), uvec2(0u));
 }
 
 // Tells whether a block of the cursor's macrocell may hold a surface that is drawn.
@@ -176,34 +138,36 @@ bool IsBlockActive(GridCursor at, ivec3 block)
   }
 #endif
   uint local = LocalIndex(block);
-  uint word = macrocells[at.Index].Ranges[local >> 1];
-  uint range = (local & 1u) == 0u ? word & 0xFFFFu : word >> 16;
-  uint low = range & 0xFFu;
-  uint high = range >> 8;
-  return low <= high && StraddlesAnyIsovalue(RangeLow(at.Range, low), RangeHigh(at.Range, high));
+  return ((local < 32u ? at.Marks.x : at.Marks.y) >> (local & 31u) & 1u) != 0u;
 }
 
-// Walks from `block`, which counts too, to the next active one; false if the ray leaves the volume
-// before.
-bool FindActiveBlock(Ray ray, inout ivec3 block, inout GridCursor at)
+// Walks to the next active block. `leaves`: the one where the ray is does not count. False if the
+// ray leaves the volume before. Lanes that skip a macrocell and those that go to the next block
+// make the last step together.
+bool FindActiveBlock(Ray ray, bool leaves, inout GridPlace place, inout GridCursor at)
 {
   bool inside = true;
   while (inside)
   {
-    if (MacrocellOf(block) != at.Coordinates)
+    ivec3 macrocell = MacrocellOf(place.Block);
+    if (macrocell != at.Macrocell)
     {
-      MoveCursor(at, MacrocellOf(block));
+      at = GridCursor(macrocell, blockMarks[MacrocellIndex(macrocell)]);
     }
-    if (!at.Active)
-    {
-      inside = SkipMacrocell(ray, block);
-      continue;
-    }
-    if (IsBlockActive(at, block))
+    bool skips = at.Marks == uvec2(0u);
+    if (!skips && !leaves && IsBlockActive(at, place.Block))
     {
       return true;
     }
-    inside = NextBlock(ray, block);
+    leaves = false;
+    Wide t = SmallestOf(ExitsBehind(ray, place, skips ? MACROCELL_SIDE - 1 : 0));
+    if (skips)
+    {
+      CrossThreePlanes(ray, BlockSpacing(ray), t, place.Block, place.Exits);
+    }
+    inside = IsLess(t, ray.Leave);
+    CrossPlanes(ray.Step, BlockSpacing(ray), AreReached(place.Exits, t), place.Block, place.Exits);
+    inside = inside && InGrid(place.Block);
   }
   return false;
 }

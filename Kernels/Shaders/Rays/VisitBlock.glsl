@@ -8,27 +8,27 @@
 
 struct BlockVisit
 {
-  Wide Enter, Leave; // parameters
-  ivec3 Reach;       // into the next blocks
+  BlockCrossing Crossing;
+  ivec3 Reach; // into the next blocks
 };
 
-BlockVisit PlanVisit(Ray ray, ivec3 block)
+BlockVisit PlanVisit(Ray ray, GridPlace place)
 {
-  BlockCrossing at = CrossBlock(ray, block);
-  return BlockVisit(
-    at.Enter, at.Leave, DualGridReach(ray, block, at.Enter, at.Leave, at.Exits));
+  BlockCrossing crossing = CrossBlock(ray, place);
+  return BlockVisit(crossing, DualGridReach(ray, place, crossing));
 }
 
 // Is a block of this visit not in the cache? Finds their slots.
 bool LacksBlocks(ivec3 block, BlockVisit visit)
 {
-  return FindSlots(block, visit.Reach) != 0u;
+  FindSlots(block, visit.Reach);
+  return LacksSlots();
 }
 
 // Intersects the ray with the block, whose slots were found last. False if there is no hit.
-bool VisitBlock(Ray ray, ivec3 block, BlockVisit visit, out Hit hit)
+bool VisitBlock(Ray ray, GridPlace place, BlockVisit visit, out Hit hit)
 {
-  UseBlocks(block, visit.Reach);
+  UseBlocks(place.Block, visit.Reach);
   ++pairs;
-  return IntersectBlock(ray, block, visit.Enter, visit.Leave, hit);
+  return IntersectBlock(ray, place, visit.Crossing, hit);
 }

@@ -19,6 +19,9 @@ BUFFER_STREAM StreamBuffer { uint stream[]; };
 #ifdef BUFFER_MACROCELLS
 BUFFER_MACROCELLS Macrocells { Macrocell macrocells[]; };
 #endif
+#ifdef BUFFER_BLOCK_MARKS
+BUFFER_BLOCK_MARKS BlockMarks { uvec2 blockMarks[]; }; // see MarkBlocks.comp
+#endif
 #ifdef BUFFER_HIDDEN_CELLS
 // Which cells are hidden, as runs of blocks that are alike: their number, the first block of each,
 // then two words of bits for each. See HiddenCells.glsl.

@@ -38,7 +38,7 @@ uint BlockIndex(ivec3 b)
 
 bool InGrid(ivec3 block)
 {
-  return all(greaterThanEqual(block, ivec3(0))) && all(lessThan(block, volume.Blocks));
+  return all(lessThan(uvec3(block), uvec3(volume.Blocks)));
 }
 
 uint MacrocellIndex(ivec3 c)

@@ -65,10 +65,10 @@ bvec3 AreEqual(Wide3 a, Wide b)
   return equal(uvec3(a.High ^ b.High) | (a.Low ^ b.Low), uvec3(0u));
 }
 
-// 1 where a component is not greater, else 0.
-ivec3 NotGreater(Wide3 a, Wide b)
+// -1 where a component is not greater, else 0.
+ivec3 AreReached(Wide3 a, Wide b)
 {
-  return 1 + (Difference(AllOf(b), a).High >> 31);
+  return ~(Difference(AllOf(b), a).High >> 31);
 }
 
 Wide SmallerOf(Wide a, Wide b)

@@ -32,10 +32,10 @@ bool FindNormal(uint pixel, out vec3 normal)
   SurfacePoint hit = PointOf(LineOf(pixel), HitKeyOf(pixel));
   ivec3 first = BlockOf(FirstStencilSample(hit.Cell));
   ivec3 reach = BlockOf(LastStencilSample(hit.Cell)) - first;
-  uint missing = FindSlots(first, reach);
-  if (missing != 0u)
+  FindSlots(first, reach);
+  if (LacksSlots())
   {
-    for (uint bits = missing; bits != 0u; bits &= bits - 1u)
+    for (uint bits = MissingSlots(); bits != 0u; bits &= bits - 1u)
     {
       RequestBlock(first + SideOffset(findLSB(bits)));
     }

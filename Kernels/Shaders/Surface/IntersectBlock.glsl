@@ -10,20 +10,6 @@
 #include "Surface/Intersection.glsl"
 #include BLOCK_ACCESS
 
-// Cell of the block in which the ray is at parameter t: it has crossed all planes up to t.
-ivec3 CellAt(Ray ray, ivec3 block, Wide t)
-{
-  ivec3 entry = EntryPlanes(ray, block, BLOCK_SIDE);
-  Wide3 plane = PlanesT(ray, entry);
-  ivec3 crossed = ivec3(0);
-  for (int i = 1; i < BLOCK_SIDE; ++i)
-  {
-    plane = Sum(plane, ray.Spacing);
-    crossed += NotGreater(plane, t);
-  }
-  return entry - (1 - ray.Step) / 2 + crossed * ray.Step;
-}
-
 vec4 LoadSamples(uvec4 at)
 {
   uvec4 bits = uvec4(cacheValues[at.x], cacheValues[at.y], cacheValues[at.z], cacheValues[at.w]);
@@ -93,6 +79,14 @@ bool IsVisible(uvec2 hidden, ivec3 cell)
 #endif
 }
 
+// Where a ray is among the cells: the cell, and parameters of the planes through which it leaves
+// that.
+struct CellPlace
+{
+  ivec3 Cell;
+  Wide3 Exits;
+};
+
 // A ray's way through a cell: between parameters, and places in the cell's unit cube.
 struct CellPath
 {
@@ -112,13 +106,13 @@ vec3 PlaceAlong(Ray ray, Wide3 entries, Wide t)
 }
 
 // From t0 to t1, which both lie in the cell; exact on the faces that the ray crosses there.
-CellPath PathThrough(Ray ray, ivec3 cell, Wide t0, Wide t1, Wide3 exits)
+CellPath PathThrough(Ray ray, CellPlace at, Wide t0, Wide t1)
 {
-  Wide3 entries = Difference(exits, ray.Spacing);
+  Wide3 entries = Difference(at.Exits, ray.Spacing);
   vec3 u0 = mix(PlaceAlong(ray, entries, t0), vec3(0.0), AreEqual(entries, t0));
-  vec3 u1 = mix(PlaceAlong(ray, entries, t1), vec3(1.0), AreEqual(exits, t1));
+  vec3 u1 = mix(PlaceAlong(ray, entries, t1), vec3(1.0), AreEqual(at.Exits, t1));
   bvec3 backwards = lessThan(ray.Step, ivec3(0));
-  return CellPath(cell, t0, t1, mix(u0, 1.0 - u0, backwards), mix(u1, 1.0 - u1, backwards));
+  return CellPath(at.Cell, t0, t1, mix(u0, 1.0 - u0, backwards), mix(u1, 1.0 - u1, backwards));
 }
 
 Wide HitBetween(CellPath path, float s)
@@ -190,23 +184,34 @@ bool IntersectCell(CellPath path, Corners w, out Hit hit)
   return hit.Key != NO_HIT;
 }
 
-// Moves to the next cell, which the ray enters at parameter t; `exits` are those of the cell.
-void LeaveCell(Ray ray, Wide t, inout ivec3 cell, inout Wide3 exits)
+// Moves to the next cell, which the ray enters at parameter t.
+void LeaveCell(Ray ray, Wide t, inout CellPlace at)
 {
-  ivec3 crossed = NotGreater(exits, t);
-  cell += crossed * ray.Step;
-  exits = Sum(exits, Wide3(ray.Spacing.High & -crossed, ray.Spacing.Low & uvec3(-crossed)));
+  CrossPlanes(ray.Step, ray.Spacing, AreReached(at.Exits, t), at.Cell, at.Exits);
 }
 
-// First hit of the ray in the block between parameters t0 and end; false if there is none. The walk
-// to the next cell that the surface crosses is a loop of its own, so that the lanes of a group meet
-// again for the costly part.
-bool IntersectBlock(Ray ray, ivec3 block, Wide t0, Wide end, out Hit hit)
+// The cell of a block in which the ray is at parameter t: from the cell in the corner where rays of
+// this direction enter the block it has crossed all planes up to t.
+CellPlace CellAt(Ray ray, GridPlace place, Wide t)
+{
+  CellPlace at;
+  at.Cell = BLOCK_SIDE * place.Block + ((BLOCK_SIDE - 1) & IsBackwards(ray));
+  Wide3 further = Sum(ray.Spacing, Doubled(ray.Spacing, 1));
+  at.Exits = Difference(place.Exits, further);
+  CrossThreePlanes(ray, ray.Spacing, t, at.Cell, at.Exits);
+  return at;
+}
+
+// First hit of the ray in the block; false if there is none. The walk to the next cell that the
+// surface crosses is a loop of its own, so that the lanes of a group meet again for the costly
+// part.
+bool IntersectBlock(Ray ray, GridPlace place, BlockCrossing crossing, out Hit hit)
 {
   hit = MISS;
-  ivec3 cell = CellAt(ray, block, t0);
-  Wide3 exits = PlanesT(ray, ExitPlanes(ray, cell, 1));
-  uvec2 hidden = HiddenCellsOf(block);
+  Wide t0 = crossing.Enter;
+  Wide end = crossing.Leave;
+  CellPlace at = CellAt(ray, place, t0);
+  uvec2 hidden = HiddenCellsOf(place.Block);
   for (int tested = 0; tested < 16; ++tested) // a ray crosses at most 10 cells of 4^3
   {
     Corners w;
@@ -215,19 +220,19 @@ bool IntersectBlock(Ray ray, ivec3 block, Wide t0, Wide end, out Hit hit)
     bool crossed = false;
     for (int walked = 0; walked < 16; ++walked)
     {
-      t1 = SmallestOf(exits);
+      t1 = SmallestOf(at.Exits);
       last = !IsLess(t1, end);
-      w = LoadCorners(cell);
-      crossed = HoldsSurface(w) && IsVisible(hidden, cell);
+      w = LoadCorners(at.Cell);
+      crossed = HoldsSurface(w) && IsVisible(hidden, at.Cell);
       if (crossed || last)
       {
         break;
       }
-      LeaveCell(ray, t1, cell, exits);
+      LeaveCell(ray, t1, at);
       t0 = t1;
     }
     t1 = SmallerOf(t1, end);
-    if (crossed && IntersectCell(PathThrough(ray, cell, t0, t1, exits), w, hit))
+    if (crossed && IntersectCell(PathThrough(ray, at, t0, t1), w, hit))
     {
       return true;
     }
@@ -235,7 +240,7 @@ bool IntersectBlock(Ray ray, ivec3 block, Wide t0, Wide end, out Hit hit)
     {
       return false;
     }
-    LeaveCell(ray, t1, cell, exits);
+    LeaveCell(ray, t1, at);
     t0 = t1;
   }
   return false;

@@ -204,7 +204,10 @@ def test_memory_formula(shape, size, settings):
 
 SHAPE, SIZE = (100, 90, 110), (160, 120)
 BLOCKS, MACROCELLS, PIXELS = 25 * 23 * 28, 7 * 6 * 7, 160 * 120
-ALWAYS = {"control", "pass_statistics", "macrocells", "hits", "cache_values", "scene", "staging"}
+ALWAYS = {
+    *("control", "pass_statistics", "macrocells", "block_marks"),
+    *("hits", "cache_values", "scene", "staging"),
+}
 
 
 @pytest.fixture(scope="module")
@@ -229,9 +232,11 @@ def test_a_small_volume_needs_no_cache(volume):
     assert set(buffers) == ALWAYS | {"normals"}
     assert buffers["cache_values"] == 256 * BLOCKS
     assert buffers["macrocells"] == 136 * MACROCELLS
+    assert buffers["block_marks"] == 8 * MACROCELLS
     assert stages == {
         "DecodeBlocks",
         "BlockRanges",
+        "MarkBlocks",
         "PlanPass",
         "CastRays",
         "FinishHits",
