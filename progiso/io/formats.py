@@ -44,8 +44,7 @@ _ZFP = Format("zfp", "open_zfp", "zfp")
 _RAW = Format("raw", "open_raw", "raw samples")
 _METAIMAGE = Format("metaimage", "open_metaimage", "MetaImage")
 _NRRD = Format("nrrd", "open_nrrd", "NRRD")
-_NIFTI = Format("neuroimages", "open_neuroimage", "NIfTI", "medical")
-_NEURO = Format("neuroimages", "open_neuroimage", "Analyze, MGH, AFNI, PAR/REC, MINC", "medical")
+_LEGACY = Format("legacy", "open_legacy", "medical images")
 _TIFF = Format("tiff", "open_tiff", "TIFF", "tiff")
 _HDF5 = Format("hdf5", "open_hdf5", "HDF5", "hdf5", arrays=True)
 _PICTURE = Format("folders", "open_picture", "pictures", "pictures")
@@ -61,13 +60,8 @@ FORMATS: dict[str, Format] = {
     ".mhd": _METAIMAGE,
     ".nrrd": _NRRD,
     ".nhdr": _NRRD,
-    ".nii": _NIFTI,
-    ".nii.gz": _NIFTI,
-    **dict.fromkeys(
-        ".hdr .hdr.gz .img .img.gz .mgh .mgh.gz .mgz .head .brik .brik.gz .par .rec .mnc".split(),
-        _NEURO,
-    ),
-    ".gii": _NEURO,  # surfaces: refused with the reason
+    ".nii": _LEGACY,
+    ".nii.gz": _LEGACY,
     ".zfp": _ZFP,
     ".raw": _RAW,
     ".tif": _TIFF,
@@ -95,7 +89,7 @@ FORMATS: dict[str, Format] = {
 }
 
 #: What reads a file of another suffix.
-OTHER = Format("others", "open_other", "other images")
+OTHER = Format("legacy", "open_other", "other images")
 
 #: What reads a folder that has none of the suffixes above.
 FOLDER = Format("folders", "open_folder", "folders of DICOM files or numbered slices")

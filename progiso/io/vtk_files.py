@@ -26,6 +26,7 @@ from .files import DISK_FULL
 from .footer import add_footer, check_footer
 from .images import ImageSource, checked_image, geometry_of, place_as
 from .source import Description, Region, Selection, Source
+from .vti_check import check_vti
 
 _POINTS = 0  # vtkDataObject::FieldAssociations
 
@@ -49,6 +50,8 @@ def open_vtk(path: Path, selection: Selection) -> Source:
     make = _BY_EXTENT.get(path.suffix.lower())
     if make is None:
         return ImageSource(path, read_with(vtkDataSetReader(), path), selection.array)
+    if path.suffix.lower() == ".vti":
+        check_vti(path)
     array = _plain_array(path, make(), selection.array)
     if array is None:
         return ImageSource(path, read_with(make(), path), selection.array)

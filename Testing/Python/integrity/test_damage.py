@@ -46,7 +46,16 @@ def test_truncated_files(tmp_path, kind, appended):
     progiso.save(KINDS[kind](), path, appended=appended)
     whole = path.read_bytes()
     end = whole.rindex(b"</VTKFile>") + 9
-    for length in (0, 1, 100, len(whole) // 4, len(whole) // 2, len(whole) * 9 // 10, end - 10, end):
+    for length in (
+        0,
+        1,
+        100,
+        len(whole) // 4,
+        len(whole) // 2,
+        len(whole) * 9 // 10,
+        end - 10,
+        end,
+    ):
         path.write_bytes(whole[:length])
         with pytest.raises((ValueError, RuntimeError), match=r"a\.vti"):
             progiso.read(path)
@@ -103,7 +112,9 @@ def test_what_was_left_out_is_noticed(tmp_path):
     whole = path.read_bytes()
     for changed in (whole[:4000] + whole[4001:], whole[:4000] + b"x" + whole[4000:]):
         path.write_bytes(changed)
-        with pytest.raises(ValueError, match="bytes before it, and there are .*remove its last line"):
+        with pytest.raises(
+            ValueError, match="bytes before it, and there are .*remove its last line"
+        ):
             progiso.read(path)
 
 

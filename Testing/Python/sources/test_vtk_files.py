@@ -1,0 +1,85 @@
+"""VTK's own files as sources: by extent, and never a crash."""
+
+import itertools
+import pickle
+
+import numpy as np
+import pytest
+from vtkmodules.vtkCommonCore import vtkStringArray
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
+
+import progiso
+from helpers.images import blobs, check_same, make_image
+from progiso.io import open_source
+
+STYLES = list(
+    itertools.product(
+        ("Ascii", "Binary", "Appended"), (0, 1), ("None", "ZLib", "LZ4"), ("UInt32", "UInt64")
+    )
+)
+
+
+def write(image, path, mode="Binary", encoded=0, packed="None", header="UInt64", big=False):
+    """Write a .vti in one of VTK's styles."""
+    writer = vtkXMLImageDataWriter()
+    writer.SetInputData(image)
+    getattr(writer, f"SetDataModeTo{mode}")()
+    writer.SetEncodeAppendedData(encoded)
+    getattr(writer, f"SetCompressorTypeTo{packed}")()
+    getattr(writer, f"SetHeaderTypeTo{header}")()
+    if big:
+        writer.SetByteOrderToBigEndian()
+    writer.SetFileName(str(path))
+    assert writer.Write()
+
+
+@pytest.mark.parametrize("style", STYLES, ids=str)
+@pytest.mark.parametrize("strings", [2, 300])
+def test_strings_that_are_not_as_many_as_told(style, strings, tmp_path):
+    """VTK would write behind the end of its array; what nothing here unpacks is left to VTK."""
+    image, names = make_image(blobs((5, 6, 7))), vtkStringArray()
+    names.SetName("names")
+    for number in range(strings):
+        names.InsertNextValue("x" * (number * 7 % 101))
+    image.GetFieldData().AddArray(names)
+    path = tmp_path / "volume.vti"
+    write(image, path, *style, big=style[1] == 0)
+    assert open_source(path).about.dimensions == (7, 6, 5)
+    told = b'NumberOfTuples="%d"'
+    path.write_bytes(path.read_bytes().replace(told % strings, told % (strings - 1)))
+    if style[2] == "LZ4" and style[0] != "Ascii":
+        return
+    with pytest.raises(ValueError, match=f"'names' are {strings}, not {strings - 1}"):
+        open_source(path)
+
+
+def test_packed_data_that_announce_too_much(tmp_path):
+    """VTK would ask for as much memory, and end the process."""
+    path = tmp_path / "volume.vti"
+    write(make_image(blobs((5, 6, 7))), path, "Appended", 0, "ZLib")
+    data = path.read_bytes()
+    start = data.index(b"_", data.index(b"<AppendedData")) + 1
+    blocks, size = (int.from_bytes(data[start + i : start + i + 8], "little") for i in (0, 8))
+    assert blocks == 1 and size >= 5 * 6 * 7
+    for place in (0, 8, 24):
+        hostile = bytearray(data)
+        hostile[start + place + 5] = 0xB0
+        path.write_bytes(hostile)
+        with pytest.raises(ValueError, match="announces more than it can hold"):
+            open_source(path)
+
+
+def test_by_extent(tmp_path):
+    """A region is that of the whole, and the volume that of the whole image."""
+    values = blobs((13, 7, 9)) * 100
+    image = make_image(values, origin=(1, 2, 3), extent_start=(5, -6, 7))
+    path = tmp_path / "volume.vti"
+    write(image, path, "Appended")
+    with open_source(path) as source:
+        assert not source.more_than_samples
+        for region in (np.s_[2:5, 1:7, 3:4], np.s_[12:13, 0:1, 0:9], np.s_[:, :, :]):
+            assert np.array_equal(source.read(region), values[region])
+        assert np.array_equal(pickle.loads(pickle.dumps(source)).read(), values)
+    compressed = progiso.compress_file(path, rate=7)
+    check_same(compressed, progiso.compress(image, rate=7))
+    assert compressed.GetExtent() == image.GetExtent()

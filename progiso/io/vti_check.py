@@ -1,0 +1,155 @@
+"""A look at a VTK XML file's arrays before VTK reads them, where VTK would crash.
+
+VTK's reader writes as many strings as the data hold into an array of as many as the header tells,
+and ends the process where a packed block announces more bytes than there is memory.
+"""
+
+from __future__ import annotations
+
+import base64
+import mmap
+import re
+import zlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Literal, TypeAlias
+
+_ATTRIBUTE = re.compile(rb'(\w+)\s*=\s*"([^"]*)"')
+
+#: How many times its size a packed file may hold; zlib and LZ4 reach less, LZMA on constant data.
+_EXPANSION = 10000
+
+_Order: TypeAlias = Literal["little", "big"]
+
+#: What counts lengths in binary data: the file's ``header_type``.
+_COUNTERS = {b"UInt32": 4, b"UInt64": 8}
+
+
+def check_vti(path: Path) -> None:
+    """Raise where strings are more than told, or packed data announce what they cannot hold.
+
+    Raises
+    ------
+    ValueError
+        The message names the file and the array.
+    """
+    if path.stat().st_size == 0:
+        raise ValueError(f"'{path}' is empty")
+    with open(path, "rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
+        end = data.find(b"<AppendedData")
+        root = _attributes(data, data.find(b"<VTKFile"))
+        for start in _tags(data, len(data) if end < 0 else end):
+            about = _attributes(data, start)
+            name = about.get(b"Name", b"").decode(errors="replace")
+            if data[start : start + 7] == b"<Array ":
+                found, told = _count(data, start, about, root), _told(about)
+                if told != found:
+                    raise ValueError(
+                        f"'{path}' is damaged: its strings '{name}' are {found}, not {told}"
+                    )
+            elif root.get(b"compressor") and about.get(b"format") != b"ascii":
+                if not _may_unpack(_reader(data, start, about, root), len(data)):
+                    raise ValueError(
+                        f"'{path}' is damaged: its array '{name}' announces more than it can hold"
+                    )
+
+
+def _tags(data: mmap.mmap, end: int) -> Iterator[int]:
+    """Yield where arrays' tags begin."""
+    for tag in (b"<Array ", b"<DataArray "):
+        start = data.find(tag, 0, end)
+        while start >= 0:
+            yield start
+            start = data.find(tag, start + 1, end)
+
+
+def _may_unpack(read: _Reader, file_bytes: int) -> bool:
+    """Tell whether packed blocks may be as large as they announce."""
+    blocks, size, last = read.numbers(3)
+    if blocks == 0:
+        return True
+    if blocks > file_bytes or max(size, last) > 2**31 or blocks * size > _EXPANSION * file_bytes:
+        return False
+    return sum(read.numbers(3 + blocks)[3:]) <= file_bytes
+
+
+def _attributes(data: mmap.mmap, start: int) -> dict[bytes, bytes]:
+    """Read the attributes of the tag that begins at a place."""
+    end = data.find(b">", max(start, 0))
+    if start < 0 or end < 0:
+        return {}
+    return dict(_ATTRIBUTE.findall(data[start:end]))
+
+
+def _told(about: dict[bytes, bytes]) -> int:
+    """Return the number of strings that a header tells of."""
+    return int(about.get(b"NumberOfTuples", b"0")) * int(about.get(b"NumberOfComponents", b"1"))
+
+
+def _count(data: mmap.mmap, start: int, about: dict[bytes, bytes], root: dict[bytes, bytes]) -> int:
+    """Count the strings in an array's data, each of which ends with a zero."""
+    if about.get(b"format") == b"ascii":
+        place = data.find(b">", start) + 1
+        return sum(int(number) == 0 for number in data[place : data.find(b"<", place)].split())
+    read, packed = _reader(data, start, about, root), root.get(b"compressor", b"")
+    if not packed:
+        return read.block().count(0)
+    if packed != b"vtkZLibDataCompressor":
+        return _told(about)  # nothing here unpacks it
+    return read.unpacked().count(0)
+
+
+def _reader(
+    data: mmap.mmap, start: int, about: dict[bytes, bytes], root: dict[bytes, bytes]
+) -> _Reader:
+    """Make what reads an array's binary data."""
+    place, raw = data.find(b">", start) + 1, False
+    if about.get(b"format") == b"appended":
+        appended = data.find(b"<AppendedData")
+        place = data.find(b"_", appended) + 1 + int(about.get(b"offset", b"0"))
+        raw = b'encoding="raw"' in data[appended : data.find(b"_", appended)]
+    counter = _COUNTERS.get(root.get(b"header_type", b"UInt32"), 4)
+    order: _Order = "big" if root.get(b"byte_order") == b"BigEndian" else "little"
+    return _Reader(data, place, raw, counter, order)
+
+
+class _Reader:
+    """Binary data at a place of a file: numbers of bytes, then the bytes, as base64 or raw."""
+
+    def __init__(self, data: mmap.mmap, place: int, raw: bool, counter: int, order: _Order) -> None:
+        self._data, self._place, self._raw = data, place, raw
+        self._counter, self._order = counter, order
+        while not raw and data[self._place : self._place + 1].isspace():
+            self._place += 1
+
+    def numbers(self, count: int) -> list[int]:
+        """Read the first numbers."""
+        data = self._bytes(0, count * self._counter)
+        if len(data) < count * self._counter:
+            raise ValueError("binary data end early")
+        parts = [data[i * self._counter : (i + 1) * self._counter] for i in range(count)]
+        return [int.from_bytes(part, self._order) for part in parts]
+
+    def block(self) -> bytes:
+        """Read the bytes behind a number, which tells how many they are."""
+        return self._bytes(self._counter, self.numbers(1)[0])
+
+    def unpacked(self) -> bytes:
+        """Read blocks that zlib has packed: their number, two sizes, a size each, then the blocks."""
+        head = (3 + self.numbers(1)[0]) * self._counter
+        sizes = self.numbers(head // self._counter)[3:]
+        if not self._raw:  # the head and the blocks are encoded apart
+            self._place += -(-head // 3) * 4
+            head = 0
+        found = b""
+        for size in sizes:
+            found += zlib.decompress(self._bytes(head, size))
+            head += size
+        return found
+
+    def _bytes(self, first: int, count: int) -> bytes:
+        if self._raw:
+            return self._data[self._place + first : self._place + first + count]
+        skipped = first // 3 * 4
+        text = self._data[self._place + skipped : self._place + -(-(first + count) // 3) * 4]
+        return base64.b64decode(text)[first % 3 : first % 3 + count]
