@@ -5,11 +5,14 @@
 #include "Codec/BitCopy.h"
 #include "Codec/BlockGeometry.h"
 #include "Codec/BlockStream.h"
+#include "Codec/MacrocellErrors.h"
 #include "Codec/SampleSummary.h"
 #include "Format/CompressedVolumeFormat.h"
 #include "Pieces/PieceExtents.h"
 #include "Status.h"
 
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -18,6 +21,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 vtkStandardNewMacro(vtkCompressedVolume);
 
@@ -87,6 +91,8 @@ void vtkCompressedVolume::Clear()
   this->Component = 0;
   this->Association = PointData;
   this->HiddenSamples = this->HiddenCells = vtkBlockMask();
+  this->LargestError = this->MeanError = -1.0;
+  this->MacrocellErrors = nullptr;
   this->Stream = nullptr;
   this->HasChecksums = false;
   this->Modified();
@@ -165,9 +171,46 @@ void vtkCompressedVolume::Crop(const int own[6])
   this->GetBlocks(blocks);
   this->HiddenSamples = this->HiddenSamples.Crop(first, count, blocks);
   this->HiddenCells = this->HiddenCells.Crop(first, count, blocks);
+  this->CropErrors(first, count);
   this->SetStream(stream);
   this->SetDimensions(dims);
   this->SetExtent(kept);
+}
+
+//------------------------------------------------------------------------------
+// Gives every macrocell of a box of blocks the range and the error of all those that it lies in:
+// the box need not begin with a macrocell.
+void vtkCompressedVolume::CropErrors(const int first[3], const int count[3])
+{
+  if (!this->MacrocellErrors)
+  {
+    return;
+  }
+  vtkTypeInt64 blocks[3], kept[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    blocks[axis] = BlocksAlong(this->Dimensions[axis]);
+    kept[axis] = count[axis];
+  }
+  ::MacrocellErrors cropped(kept);
+  vtkTypeInt64 at[3];
+  for (at[2] = 0; at[2] < kept[2]; ++at[2])
+  {
+    for (at[1] = 0; at[1] < kept[1]; ++at[1])
+    {
+      for (at[0] = 0; at[0] < kept[0]; ++at[0])
+      {
+        const vtkTypeInt64 from[3] = { first[0] + at[0], first[1] + at[1], first[2] + at[2] };
+        const float* entry =
+          this->MacrocellErrors->GetPointer(3 * ::MacrocellErrors::IndexOf(from, blocks));
+        if (entry[0] <= entry[1])
+        {
+          cropped.Add(at, entry[0], entry[1], entry[2]);
+        }
+      }
+    }
+  }
+  this->MacrocellErrors = cropped.MakeArray();
 }
 
 //------------------------------------------------------------------------------
@@ -255,6 +298,58 @@ vtkBlockMask vtkCompressedVolume::GetCellsWithoutSurface() const
 }
 
 //------------------------------------------------------------------------------
+vtkFloatArray* vtkCompressedVolume::GetMacrocellErrors() const
+{
+  return this->MacrocellErrors;
+}
+
+//------------------------------------------------------------------------------
+void vtkCompressedVolume::SetMacrocellErrors(vtkFloatArray* macrocells)
+{
+  if (this->MacrocellErrors != macrocells)
+  {
+    this->MacrocellErrors = macrocells;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+// A bit more halves the error, or more than that.
+std::string vtkCompressedVolume::DescribeDoubts(vtkDoubleArray* isovalues) const
+{
+  const vtkIdType count = this->LargestError > 0.0 ? isovalues->GetNumberOfValues() : 0;
+  std::ostringstream listed;
+  int number = 0;
+  double rate = 0.0, error = 0.0, distance = std::numeric_limits<double>::infinity();
+  for (vtkIdType i = 0; i < count && this->MacrocellErrors; ++i)
+  {
+    const double isovalue = isovalues->GetValue(i);
+    const ::MacrocellErrors::Doubt doubt =
+      ::MacrocellErrors::Judge(this->MacrocellErrors, this->ToStored(isovalue));
+    if (doubt.IsLikely)
+    {
+      listed << (number++ > 0 ? ", " : "") << isovalue;
+      error = std::max(error, this->Scale * doubt.Error);
+      distance = std::min(distance, this->Scale * doubt.Distance);
+    }
+  }
+  if (number == 0)
+  {
+    return {};
+  }
+  const double exact = (this->Range[1] - this->Range[0]) / 16777216.0; // float32's own digits
+  const double bits = std::log2(error / std::max(distance, exact));
+  rate = std::min(32.0, std::ceil(2.0 * (this->GetRate() + std::max(bits, 0.0)) + 1.0) / 2.0);
+  std::ostringstream text;
+  text << "Isovalue" << (number > 1 ? "s " : " ") << listed.str()
+       << " may show another surface than the original's: at " << this->GetRate()
+       << " bits per sample, samples " << distance << " from the isovalue are off by up to "
+       << error << ". Compress at " << rate << " bits, or choose an isovalue farther from where "
+       << "samples have one value.";
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
 vtkUnsignedCharArray* vtkCompressedVolume::GetStream() const
 {
   return this->Stream;
@@ -298,6 +393,10 @@ void vtkCompressedVolume::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Range: " << this->Range[0] << " " << this->Range[1] << "\n";
   os << indent << "Offset: " << this->Offset << "\n";
   os << indent << "Scale: " << this->Scale << "\n";
+  os << indent << "LargestError: " << this->LargestError << "\n";
+  os << indent << "MeanError: " << this->MeanError << "\n";
+  os << indent << "MacrocellErrors: "
+     << (this->MacrocellErrors ? this->MacrocellErrors->GetNumberOfTuples() : 0) << "\n";
   os << indent << "ScalarType: " << this->ScalarType << "\n";
   os << indent << "ArrayName: " << this->ArrayName << "\n";
   os << indent << "Component: " << this->Component << "\n";

@@ -23,6 +23,9 @@
  *   optional): what is hidden, as runs of blocks (first block, bits), see vtkBlockMask
  * - ProgIso.ZFP.Offset, ProgIso.ZFP.Scale (double, optional, default 0 and 1): the units of the
  *   stream; a sample is Offset + Scale * (value in the stream), in double precision
+ * - ProgIso.ZFP.Error (2 doubles, optional): largest and mean error that encoding left
+ * - ProgIso.ZFP.MacrocellErrors (triples of floats, optional): smallest and largest sample, and
+ *   largest error, of every macrocell of 16x16x16 samples, x fastest, in the stream's units
  * - ProgIso.ZFP.PageChecksums (unsigned 32-bit integers): zlib's CRC-32 of every page of 65536
  * bytes of the stream, the last of which may be shorter; a part of a volume is checked by the pages
  * that hold its blocks
@@ -63,6 +66,8 @@
 #include <string> // for the array name and error messages
 
 class vtkDataObject;
+class vtkDoubleArray;
+class vtkFloatArray;
 class vtkImageData;
 class vtkInformation;
 class vtkUnsignedCharArray;
@@ -231,6 +236,37 @@ public:
 
   ///@{
   /**
+   * Largest and mean error of the visible samples, in their own units: how far a sample of the
+   * original array and the decoded one are apart. -1 if they are not known, as of volumes that
+   * older versions wrote. The mean has three digits.
+   */
+  vtkGetMacro(LargestError, double);
+  vtkSetMacro(LargestError, double);
+  vtkGetMacro(MeanError, double);
+  vtkSetMacro(MeanError, double);
+  ///@}
+
+  ///@{
+  /**
+   * Smallest sample, largest sample and largest error of every macrocell of 16x16x16 samples, x
+   * fastest, in the stream's units; a macrocell without visible samples has its smallest above its
+   * largest. Null if they are not known.
+   */
+  vtkFloatArray* GetMacrocellErrors() const;
+  void SetMacrocellErrors(vtkFloatArray* macrocells);
+  ///@}
+
+  /**
+   * Says, in one sentence, of which isovalues the compressed volume's surface is probably not that
+   * of the original, and what rate would do; empty if of none, or if errors are not known. That is
+   * so if in more than half of the macrocells with a part of the surface the smallest or the
+   * largest sample is nearer to the isovalue than the error: with labels, masks and plateaus, not
+   * where samples vary smoothly.
+   */
+  std::string DescribeDoubts(vtkDoubleArray* isovalues) const;
+
+  ///@{
+  /**
    * VTK type (VTK_SHORT, ...), name and component of the original array.
    */
   vtkGetMacro(ScalarType, int);
@@ -295,6 +331,7 @@ private:
   void operator=(const vtkCompressedVolume&) = delete;
 
   void Clear();
+  void CropErrors(const int first[3], const int count[3]);
   void CopyBlocks(const int first[3], const int count[3], vtkUnsignedCharArray* target) const;
 
   int BlockBits = 0;
@@ -309,6 +346,9 @@ private:
   int Association = PointData;
   vtkBlockMask HiddenSamples;
   vtkBlockMask HiddenCells;
+  double LargestError = -1.0;
+  double MeanError = -1.0;
+  vtkSmartPointer<vtkFloatArray> MacrocellErrors;
   vtkSmartPointer<vtkUnsignedCharArray> Stream;
   bool HasChecksums = false;
   std::string ErrorMessage;

@@ -11,6 +11,7 @@
 #include "vtkCellData.h"
 #include "vtkCompressedVolume.h"
 #include "vtkDataArray.h"
+#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -239,6 +240,9 @@ bool vtkCompressedVolumeBuilder::Finish(vtkImageData* image)
   volume->SetOffset(this->Offset);
   volume->SetScale(this->Scale);
   volume->SetStoredRange(summary.GetRange()[0], summary.GetRange()[1]);
+  volume->SetLargestError(summary.LargestError);
+  volume->SetMeanError(summary.GetMeanError());
+  volume->SetMacrocellErrors(work->Encoder.GetErrors().MakeArray());
   volume->SetHiddenSamples(work->Encoder.GetMask());
   volume->SetScalarType(work->ScalarType);
   volume->SetArrayName(name.empty() ? "scalars" : name);

@@ -4,6 +4,8 @@
 
 #include "Codec/ArrayMemory.h"
 #include "Codec/BlockStream.h"
+#include "Codec/LabelDetector.h"
+#include "Codec/RateFinder.h"
 #include "Codec/SampleEncoder.h"
 #include "Pieces/CompressedPart.h"
 #include "Pieces/HidingFlags.h"
@@ -14,6 +16,7 @@
 #include "vtkCompressedVolume.h"
 #include "vtkDataArray.h"
 #include "vtkErrorCode.h"
+#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationIntegerKey.h"
@@ -171,6 +174,8 @@ public:
 private:
   Status FindArray();
   Status CheckInput(const CompressedPart& part) const;
+  Status FindBlockBits(
+    const int dims[3], vtkDataArray* samples, const SampleEncoder& encoder, int& blockBits) const;
   Status Compress(const CompressedPart& part, vtkImageData* output) const;
 
   vtkImageZFPCompress* Self;
@@ -256,6 +261,42 @@ Status vtkImageZFPCompress::Work::CheckInput(const CompressedPart& part) const
 }
 
 //------------------------------------------------------------------------------
+// Finds the rate that was asked for: itself, or by a tolerance, or by what the samples are.
+Status vtkImageZFPCompress::Work::FindBlockBits(
+  const int dims[3], vtkDataArray* samples, const SampleEncoder& encoder, int& blockBits) const
+{
+  const int component = this->Self->Component;
+  blockBits = vtkCompressedVolume::BlockBitsForRate(this->Self->Rate);
+  RateFinder finder;
+  finder.Units = encoder.Units;
+  finder.Hidden = encoder.Hidden;
+  finder.Threads = this->Self->NumberOfThreads;
+  finder.Tolerance = this->Self->Tolerance;
+  if (finder.Tolerance > 0.0)
+  {
+    const bool isFound = finder.Find(dims, samples, component);
+    blockBits = finder.GetBlockBits();
+    return isFound ? Status()
+                   : Status::Error("No rate keeps the samples within ", finder.Tolerance,
+                       ": at 32 bits some are off by ", finder.GetLeastError(), ".");
+  }
+  if (this->Self->KeepLabels)
+  {
+    LabelDetector detector;
+    detector.Hidden = encoder.Hidden;
+    detector.AddSlabs(dims, 0, BlocksAlong<vtkTypeInt64>(dims[2]), samples, component);
+    if (detector.FindsLabels())
+    {
+      finder.Tolerance = LabelDetector::Tolerance;
+      finder.SetBlockBits(blockBits);
+      blockBits = finder.Find(dims, samples, component) ? finder.GetBlockBits()
+                                                        : +vtkCompressedVolume::MaximumBlockBits;
+    }
+  }
+  return {};
+}
+
+//------------------------------------------------------------------------------
 Status vtkImageZFPCompress::Work::Compress(const CompressedPart& part, vtkImageData* output) const
 {
   const int* dims = part.Size;
@@ -268,7 +309,11 @@ Status vtkImageZFPCompress::Work::Compress(const CompressedPart& part, vtkImageD
   encoder.Hidden.HideNonFinite = this->Self->MaskNonFinite;
   encoder.Units = SampleUnits::Find(samples, component, encoder.Hidden);
 
-  const int blockBits = vtkCompressedVolume::BlockBitsForRate(this->Self->Rate);
+  int blockBits = 0;
+  if (Status status = this->FindBlockBits(dims, samples, encoder, blockBits); !status)
+  {
+    return status;
+  }
   const vtkTypeInt64 bytes = vtkCompressedVolume::StreamBytesFor(dims, blockBits);
   vtkNew<vtkUnsignedCharArray> stream;
   if (Status status = AllocateArray(stream.Get(), bytes, "the stream", dims); !status)
@@ -293,6 +338,9 @@ Status vtkImageZFPCompress::Work::Compress(const CompressedPart& part, vtkImageD
   volume->SetOffset(encoder.Units.Offset);
   volume->SetScale(encoder.Units.Scale);
   volume->SetStoredRange(summary.GetRange()[0], summary.GetRange()[1]);
+  volume->SetLargestError(summary.LargestError);
+  volume->SetMeanError(summary.GetMeanError());
+  volume->SetMacrocellErrors(encoder.GetErrors().MakeArray());
   volume->SetHiddenSamples(encoder.GetMask());
   volume->SetHiddenCells(part.FindHiddenCells(this->Input));
   volume->SetScalarType(this->Array->GetDataType());
@@ -336,5 +384,7 @@ void vtkImageZFPCompress::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Rate: " << this->Rate << " (actually " << this->GetActualRate() << ")\n";
   os << indent << "Component: " << this->Component << "\n";
   os << indent << "MaskNonFinite: " << (this->MaskNonFinite ? "on\n" : "off\n");
+  os << indent << "KeepLabels: " << (this->KeepLabels ? "on\n" : "off\n");
+  os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
 }

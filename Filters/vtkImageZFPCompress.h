@@ -74,7 +74,7 @@ public:
 
   /**
    * The rate that zfp uses for GetRate(), in bits per sample: a multiple of 1/64, at least 9/64. 0
-   * if the rate is out of range.
+   * if the rate is out of range. The output tells what KeepLabels and Tolerance made of it.
    */
   double GetActualRate() const;
 
@@ -94,6 +94,28 @@ public:
   vtkSetMacro(MaskNonFinite, bool);
   vtkGetMacro(MaskNonFinite, bool);
   vtkBooleanMacro(MaskNonFinite, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Whether labels and masks are kept apart: whole numbers, of any type, of which a block of 4x4x4
+   * samples has few different ones (8 in the mean, where it has several), and either few in all
+   * (16) or far apart. Those are compressed at the least rate from Rate on that leaves every sample
+   * on its side of every half-integer. Default off.
+   */
+  vtkSetMacro(KeepLabels, bool);
+  vtkGetMacro(KeepLabels, bool);
+  vtkBooleanMacro(KeepLabels, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Largest error of a sample, in the samples' own units. If it is above 0, the image is compressed
+   * at the least rate that keeps every visible sample within it, whatever Rate and KeepLabels are.
+   * An error if 32 bits per sample do not. Default 0.
+   */
+  vtkSetMacro(Tolerance, double);
+  vtkGetMacro(Tolerance, double);
   ///@}
 
   ///@{
@@ -124,6 +146,8 @@ private:
   double Rate = 8.0;
   int Component = 0;
   bool MaskNonFinite = false;
+  bool KeepLabels = false;
+  double Tolerance = 0.0;
   int NumberOfThreads = 0;
 };
 

@@ -26,11 +26,13 @@
 #include "vtkColorTransferFunction.h"
 #include "vtkCommand.h"
 #include "vtkCompressedVolume.h"
+#include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationObjectBaseVectorKey.h"
 #include "vtkMath.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkOpenGLRenderPass.h"
 #include "vtkOpenGLRenderWindow.h"
@@ -46,6 +48,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 // Users see the number in the header: it is SpeculationLimit's largest value and its default.
@@ -65,8 +68,10 @@ struct vtkProgressiveIsosurfaceMapper::Internals
   vtkTimeStamp HandOverTime; ///< of the inputs to the pipeline
   ViewState View;
   RefinementTimer Timer;
-  double InputMilliseconds = 0.0; ///< that the inputs took when they last changed
-  double TotalMilliseconds = 0.0; ///< of the present image
+  std::vector<double> JudgedIsovalues; ///< that WarnOfDoubts() has seen
+  vtkMTimeType JudgedTime = 0;         ///< the input's then
+  double InputMilliseconds = 0.0;      ///< that the inputs took when they last changed
+  double TotalMilliseconds = 0.0;      ///< of the present image
 };
 
 vtkStandardNewMacro(vtkProgressiveIsosurfaceMapper);
@@ -94,6 +99,17 @@ void vtkProgressiveIsosurfaceMapper::SetColorInputData(vtkImageData* image)
   this->SetInputDataInternal(1, image);
 }
 
+void vtkProgressiveIsosurfaceMapper::SetRate(double rate)
+{
+  const double clamped = std::min(std::max(rate, 9.0 / 64.0), 32.0);
+  if (this->Rate != clamped || this->KeepLabels)
+  {
+    this->Rate = clamped;
+    this->KeepLabels = false;
+    this->Modified();
+  }
+}
+
 void vtkProgressiveIsosurfaceMapper::SetColorInputConnection(vtkAlgorithmOutput* output)
 {
   this->SetInputConnection(1, output);
@@ -111,6 +127,7 @@ void vtkProgressiveIsosurfaceMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Rate: " << this->Rate << "\n";
   os << indent << "Component: " << this->Component << "\n";
   os << indent << "MaskNonFinite: " << (this->MaskNonFinite ? "on\n" : "off\n");
+  os << indent << "KeepLabels: " << (this->KeepLabels ? "on\n" : "off\n");
   os << indent << "ColorArrayName: " << (this->ColorArrayName ? this->ColorArrayName : "(none)")
      << "\n";
   os << indent << "ColorComponent: " << this->ColorComponent << "\n";
@@ -279,6 +296,7 @@ ArrayChoice vtkProgressiveIsosurfaceMapper::MakeArrayChoice()
   choice.ColorComponent = this->ColorComponent;
   choice.Rate = this->Rate;
   choice.MaskNonFinite = this->MaskNonFinite;
+  choice.KeepLabels = this->KeepLabels;
   return choice;
 }
 
@@ -325,9 +343,35 @@ bool vtkProgressiveIsosurfaceMapper::BindWindow(vtkOpenGLRenderWindow* window)
   return true;
 }
 
+// Says where compression may have changed the surfaces, once for an input and its isovalues.
+void vtkProgressiveIsosurfaceMapper::WarnOfDoubts(vtkVolumeProperty* property)
+{
+  Internals& impl = *this->Impl;
+  const CompressedInput& input = impl.Inputs.GetValues();
+  vtkNew<vtkDoubleArray> isovalues;
+  for (const ShownIsovalue& shown : FindShownIsovalues(property))
+  {
+    isovalues->InsertNextValue(shown.Value);
+  }
+  const double* const first = isovalues->GetPointer(0);
+  const std::vector<double> values(first, first + isovalues->GetNumberOfValues());
+  if (values == impl.JudgedIsovalues && input.GetTime() == impl.JudgedTime)
+  {
+    return;
+  }
+  impl.JudgedIsovalues = values;
+  impl.JudgedTime = input.GetTime();
+  const std::string doubts = input.GetVolume()->DescribeDoubts(isovalues);
+  if (!doubts.empty())
+  {
+    vtkWarningMacro(<< doubts);
+  }
+}
+
 bool vtkProgressiveIsosurfaceMapper::UpdateScene(vtkRenderer* renderer, vtkVolume* volume)
 {
   Internals& impl = *this->Impl;
+  this->WarnOfDoubts(volume->GetProperty());
   // not the renderer's size: a pass may draw into a framebuffer of its own, larger than the window
   int place[4];
   impl.Window.Get()->GetState()->vtkglGetIntegerv(GL_VIEWPORT, place);

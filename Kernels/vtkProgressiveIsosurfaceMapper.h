@@ -75,10 +75,20 @@ public:
   ///@{
   /**
    * Rate in bits per voxel at which plain input is compressed, 9/64 … 32. Default 8. Compressed
-   * input keeps its rate.
+   * input keeps its rate. SetRate() switches KeepLabels off: what is asked for is taken.
    */
-  vtkSetClampMacro(Rate, double, 9.0 / 64.0, 32.0);
+  virtual void SetRate(double rate);
   vtkGetMacro(Rate, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether plain input that holds labels or masks is compressed at a higher rate than Rate where
+   * that keeps them apart, see vtkImageZFPCompress. Default on.
+   */
+  vtkSetMacro(KeepLabels, bool);
+  vtkGetMacro(KeepLabels, bool);
+  vtkBooleanMacro(KeepLabels, bool);
   ///@}
 
   ///@{
@@ -309,6 +319,7 @@ protected:
   double Rate = 8.0;
   int Component = 0;
   bool MaskNonFinite = false;
+  bool KeepLabels = true;
   char* ColorArrayName = nullptr;
   int ColorComponent = 0;
   vtkScalarsToColors* ColorLookupTable = nullptr;
@@ -328,6 +339,7 @@ private:
 
   bool CanRender(vtkRenderer* renderer, vtkVolume* volume);
   ArrayChoice MakeArrayChoice();
+  void WarnOfDoubts(vtkVolumeProperty* property);
   bool UpdateInputs();
   bool UpdateColors(vtkImageData* image);
   bool BindWindow(vtkOpenGLRenderWindow* window);

@@ -22,6 +22,9 @@ Array: TypeAlias = npt.NDArray[Any]
 #: One isovalue or several.
 Isovalues: TypeAlias = float | Sequence[float]
 
+#: Bits per sample, "auto" where a tolerance tells, or None for what suits the samples.
+Rate: TypeAlias = float | str | None
+
 #: Red, green and blue, each from 0 to 1.
 RGB: TypeAlias = tuple[float, float, float]
 

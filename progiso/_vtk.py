@@ -82,6 +82,12 @@ def vtk_errors(what: str) -> Iterator[None]:
         raise RuntimeError(f"{what}: {errors[0]}")
 
 
+def messages_of(text: str) -> list[str]:
+    """Return the errors and warnings that VTK prints, each in one line without its place."""
+    errors, warned = _messages(text)
+    return errors + warned
+
+
 def _messages(text: str) -> tuple[list[str], list[str]]:
     """Split VTK's output into one-line errors and warnings, without object addresses."""
     errors: list[str] = []

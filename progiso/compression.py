@@ -5,13 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import reference, vtkDataArray
-from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData
 
-from ._typing import ImageLike, Progress
+from ._numbers import finite_list
+from ._typing import ImageLike, Isovalues, Progress, Rate
 from ._vtk import image_data, observe_progress, vtk_errors
-from .geometry import as_image
-from .options import CompressionOptions
+from .geometry import GHOSTS, as_image, hide_points, plain_samples
+from .options import CompressionOptions, rate_choice
 from .vtkProgIsoFilters import vtkCompressedVolume, vtkImageZFPCompress, vtkImageZFPDecompress
 
 _POINTS, _CELLS = 0, 1  # vtkDataObject::FieldAssociations
@@ -20,7 +22,8 @@ _POINTS, _CELLS = 0, 1  # vtkDataObject::FieldAssociations
 def compress(
     image: ImageLike,
     *,
-    rate: float = 8.0,
+    rate: Rate = None,
+    tolerance: float | None = None,
     array: str | None = None,
     component: int = 0,
     axes: str | None = None,
@@ -40,9 +43,14 @@ def compress(
         takes it, and has unit spacing. Arrays of dask, zarr and h5py are read some slices at a
         time; an ``xarray.DataArray`` lies where its coordinates say, an image of SimpleITK or
         nibabel where it says itself.
-    rate : float, default: 8
+    rate : float or "auto", optional
         Bits per sample, in (0, 32]; zfp rounds it to whole bits per block of 64 samples, at
-        least 9 of them.
+        least 9 of them. By default 8, and more for labels and masks (whole numbers, few of them in
+        one place, and few in all or far apart): the least rate that leaves every sample on its side
+        of every half-integer. "auto" takes the least rate that keeps the tolerance.
+    tolerance : float, optional
+        Largest error of a sample, above 0, in the units of the image's values. It takes the place
+        of a rate.
     array : str, optional
         Point or cell array to compress; by default the active point scalars, else the first
         point array, else the active cell scalars, else the first cell array.
@@ -70,7 +78,7 @@ def compress(
     TypeError
         When `image` is neither an image nor a three-dimensional array.
     ValueError
-        When there is no such array or the rate is out of range.
+        When there is no such array, the rate is out of range, or no rate keeps the tolerance.
     RuntimeError
         When there is no such component, the image is flat or compressed already, or a sample is
         NaN or infinite.
@@ -84,6 +92,7 @@ def compress(
     """
     options = CompressionOptions(
         rate=rate,
+        tolerance=tolerance,
         array=array,
         component=component,
         axes=axes,
@@ -107,38 +116,47 @@ def compress_with(image: ImageLike, options: CompressionOptions) -> vtkImageData
     image = as_image(image, options.axes)
     if is_compressed(image):
         raise RuntimeError("cannot compress: the image is a compressed volume already")
+    if options.array is not None:
+        image, place, name = _with_array(image, options.array)
     compressor = vtkImageZFPCompress()
     compressor.SetInputData(image)
-    compressor.SetRate(checked_rate(options.rate))
+    choice = rate_choice(options.rate, options.tolerance)
+    compressor.SetRate(choice.rate)
+    compressor.SetKeepLabels(choice.keep_labels)
+    compressor.SetTolerance(choice.tolerance)
     compressor.SetComponent(options.component)
     compressor.SetNumberOfThreads(options.threads)
     compressor.SetMaskNonFinite(bool(options.mask_nan))
     if options.array is not None:
-        _, of_cells = find_array(image, options.array)
-        compressor.SetInputArrayToProcess(0, 0, 0, _CELLS if of_cells else _POINTS, options.array)
+        compressor.SetInputArrayToProcess(0, 0, 0, place, name)
     observe_progress(compressor, options.progress)
-    with vtk_errors("cannot compress"):
-        compressor.Update()
+    try:
+        with vtk_errors("cannot compress"):
+            compressor.Update()
+    except RuntimeError as error:
+        reason = str(error).removeprefix("cannot compress: ").rstrip(".")
+        if choice.tolerance and reason.startswith("No rate keeps"):
+            raise ValueError(f"n{reason[1:]}") from None
+        raise
     return compressor.GetOutput()
 
 
 def checked_rate(rate: float) -> float:
-    """Return a rate, or raise `ValueError` when it is out of range."""
-    if not 0 < rate <= 32:
-        raise ValueError(f"rate must be in (0, 32] bits per sample, got {rate:g}")
-    return rate
+    """Return a rate in bits per sample, or raise when it is no number or out of range."""
+    return rate_choice(rate).rate
 
 
-def find_array(image: vtkImageData, array: str | None = None) -> tuple[vtkDataArray, bool]:
+def find_array(image: vtkImageData, array: Any = None) -> tuple[vtkDataArray, bool]:
     """Find an array of a plain image.
 
     Parameters
     ----------
     image : vtkmodules.vtkCommonDataModel.vtkImageData
         With the array.
-    array : str, optional
-        Its name; by default the active point scalars, else the active cell scalars, else the first
-        point array, else the first cell array.
+    array : str or array, optional
+        Its name, or the array itself, VTK's or pyvista's view of it; by default the active point
+        scalars, else the active cell scalars, else the first point array, else the first cell
+        array.
 
     Returns
     -------
@@ -149,6 +167,8 @@ def find_array(image: vtkImageData, array: str | None = None) -> tuple[vtkDataAr
 
     Raises
     ------
+    TypeError
+        When the array is asked for by something else.
     ValueError
         When there is none; the message lists those that there are.
     """
@@ -160,14 +180,81 @@ def find_array(image: vtkImageData, array: str | None = None) -> tuple[vtkDataAr
             return found, association.get() == _CELLS
     else:
         for of_cells, attributes in enumerate(data):
-            arrays = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]
-            for found in (attributes.GetScalars(), *arrays):
-                if found is not None and found.GetName() == array:
+            for found in (attributes.GetScalars(), *_numeric_arrays(attributes)):
+                if found is not None and _is_array(found, array):
                     return found, bool(of_cells)
-    names = [d.GetArrayName(i) for d in data for i in range(d.GetNumberOfArrays())]
+    names = [found.GetName() for attributes in data for found in _numeric_arrays(attributes)]
     listed = ", ".join(repr(name) for name in names) or "none"
-    wanted = "array" if array is None else f"array {array!r}"
+    if array is None:
+        raise ValueError("the image has no array of numbers")
+    if not isinstance(array, str):
+        raise ValueError(f"the array given is none of the image's; it has: {listed}")
+    other = any(attributes.GetAbstractArray(array) is not None for attributes in data)
+    wanted = f"{'numbers in array' if other else 'array'} {array!r}"
     raise ValueError(f"the image has no {wanted}; it has: {listed}")
+
+
+def _with_array(image: vtkImageData, array: Any) -> tuple[vtkImageData, int, str]:
+    """Return an image that has an array, the place of the array, and its name.
+
+    An array that is none of the image's, but has one value for each point or cell, is added to a
+    copy that shares all else.
+    """
+    if isinstance(array, (np.ndarray, vtkDataArray)) and not _holds(image, array):
+        return _added(image, array)
+    found, of_cells = find_array(image, array)
+    if not found.GetName():
+        return _added(image, found)
+    return image, _CELLS if of_cells else _POINTS, found.GetName()
+
+
+def _holds(image: vtkImageData, array: Any) -> bool:
+    data = (image.GetPointData(), image.GetCellData())
+    return any(_is_array(found, array) for each in data for found in _numeric_arrays(each))
+
+
+def _added(image: vtkImageData, array: Any) -> tuple[vtkImageData, int, str]:
+    hidden, name = None, "scalars"
+    if isinstance(array, vtkDataArray):
+        added = array.NewInstance()
+        added.ShallowCopy(array)
+    else:
+        values, hidden = plain_samples(array)
+        added = numpy_to_vtk(np.ascontiguousarray(values))
+    counts = (image.GetNumberOfPoints(), image.GetNumberOfCells())
+    if added.GetNumberOfTuples() not in counts:
+        raise ValueError(
+            f"the array has {added.GetNumberOfTuples()} values, the image {counts[0]} points and "
+            f"{counts[1]} cells"
+        )
+    place = counts.index(added.GetNumberOfTuples())
+    added.SetName(name)
+    copy = vtkImageData()
+    copy.ShallowCopy(image)
+    (copy.GetPointData(), copy.GetCellData())[place].AddArray(added)
+    if hidden is not None and place == _POINTS:
+        hide_points(copy, hidden)
+    return copy, place, name
+
+
+def _numeric_arrays(attributes: Any) -> list[vtkDataArray]:
+    """Return the arrays that can be compressed: numbers, and no flags that hide."""
+    arrays = (attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays()))
+    return [found for found in arrays if found is not None and found.GetName() != GHOSTS]
+
+
+def _is_array(found: vtkDataArray, wanted: Any) -> bool:
+    """Tell whether an array is the one that is asked for by its name, or by itself."""
+    if isinstance(wanted, str):
+        return found.GetName() == wanted
+    if wanted is found or getattr(wanted, "VTKObject", None) is found:
+        return True
+    if isinstance(wanted, vtkDataArray):
+        return False
+    if not isinstance(wanted, np.ndarray):
+        raise TypeError(f"an array's name or the array itself is wanted, got {wanted!r:.60}")
+    values = vtk_to_numpy(found)
+    return wanted.size == values.size and np.may_share_memory(values, wanted)
 
 
 def decompress(
@@ -229,10 +316,11 @@ def as_compressed(image: ImageLike, options: CompressionOptions) -> vtkImageData
     return image
 
 
-def check_array(volume: vtkImageData, array: str | None) -> None:
+def check_array(volume: vtkImageData, array: Any) -> None:
     """Raise `ValueError` unless an array, if named, is the one that a compressed volume holds."""
     held = describe(volume)["array"]
-    if array not in (None, held):
+    if array is not None and not (isinstance(array, str) and array == held):
+        array = array if isinstance(array, str) else f"(an array of {type(array).__name__})"
         raise ValueError(f"the compressed volume has no array {array!r}; it has: {held!r}")
 
 
@@ -245,7 +333,7 @@ def is_compressed(image: object) -> bool:
     >>> progiso.is_compressed(progiso.image_from_array(np.arange(512.0), (8, 8, 8)))
     False
     """
-    return bool(vtkCompressedVolume.IsCompressed(image))
+    return isinstance(image, vtkDataObject) and bool(vtkCompressedVolume.IsCompressed(image))
 
 
 def describe(image: vtkImageData) -> dict[str, Any]:
@@ -261,8 +349,10 @@ def describe(image: vtkImageData) -> dict[str, Any]:
     dict
         ``rate`` (bits per sample), ``block_bits``, ``samples`` per axis, ``blocks`` in total,
         ``stream_bytes``, ``range``, ``offset`` and ``scale`` (the stream's units: a value is
-        offset + scale times the stream's), ``array``, ``component``, ``association`` ("point" or
-        "cell") and ``scalar_type`` (VTK's number of the original type).
+        offset + scale times the stream's), ``largest_error`` and ``mean_error`` (how far samples
+        are off, in the units of the values; None where a file does not tell), ``array``,
+        ``component``, ``association`` ("point" or "cell") and ``scalar_type`` (VTK's number of the
+        original type).
 
     Raises
     ------
@@ -281,8 +371,48 @@ def describe(image: vtkImageData) -> dict[str, Any]:
         "range": list(volume.GetRange()),
         "offset": volume.GetOffset(),
         "scale": volume.GetScale(),
+        "largest_error": _known(volume.GetLargestError()),
+        "mean_error": _known(volume.GetMeanError()),
         "array": volume.GetArrayName(),
         "component": volume.GetComponent(),
         "association": "cell" if volume.GetAssociation() else "point",
         "scalar_type": volume.GetScalarType(),
     }
+
+
+def _known(error: float) -> float | None:
+    return None if error < 0 else error
+
+
+def doubts(image: vtkImageData, isovalues: Isovalues) -> str | None:
+    """Say whether a compressed volume's surface is probably not that of the original.
+
+    That is so where most parts of the surface run past samples that are nearer to the isovalue than
+    they are off, as in labels and masks at a low rate.
+
+    Parameters
+    ----------
+    image : vtkmodules.vtkCommonDataModel.vtkImageData
+        A compressed volume.
+    isovalues : float or sequence of float
+        In the units of the image's values.
+
+    Returns
+    -------
+    str or None
+        One sentence, with the rate that would do; None where nothing is wrong.
+
+    Examples
+    --------
+    >>> import numpy as np, progiso
+    >>> ball = np.where((np.mgrid[-8:8, -8:8, -8:8] ** 2).sum(0) < 36, 4000, 0)
+    >>> print(doubts(progiso.compress(ball), 0.5))
+    None
+    >>> "Compress at" in doubts(progiso.compress(ball, rate=8), 0.5)
+    True
+    """
+    volume = vtkCompressedVolume()
+    if not volume.Read(image_data(image)):
+        return None  # whoever uses the volume says what is wrong with it
+    values = numpy_to_vtk(np.array(finite_list("isovalue", isovalues)), deep=True)
+    return volume.DescribeDoubts(values) or None

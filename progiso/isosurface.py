@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from numbers import Real
 from typing import Any
 
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction, vtkVolumeProperty
 
+from ._numbers import finite_list, is_number
 from ._typing import RGB, ImageLike, Isovalues
+from ._vtk import messages_of
+from ._warnings import warn_user
 from .appearance import MAX_ISOVALUES, as_list, check_count, is_color, set_colors, set_opacities
+from .compression import doubts, is_compressed
 from .geometry import as_image
 from .options import RenderOptions, SurfaceStyle
 from .vtkProgIsoKernels import vtkIsosurfaceVolume, vtkProgressiveIsosurfaceMapper
@@ -33,7 +35,7 @@ def make_isosurface(
     speculation: bool | int = True,
     memory_budget: int = 0,
     detailed: bool = False,
-    rate: float = 8.0,
+    rate: float | None = None,
     mask_nan: bool = False,
 ) -> vtkIsosurfaceVolume:
     """Make a prop that shows isosurfaces of a plain or compressed volume.
@@ -63,8 +65,8 @@ def make_isosurface(
     detailed : bool, default: False
         Whether the statistics include the time of each stage and the distinct blocks of each
         pass, which takes time itself.
-    rate : float, default: 8
-        Bits per sample for a plain image, in (0, 32].
+    rate : float, optional
+        Bits per sample for a plain image, in (0, 32]; by default as in `compress`.
     mask_nan : bool, default: False
         Whether NaN and infinite samples of a plain image are hidden, so that the surface has a hole
         there; otherwise they are an error of the mapper.
@@ -101,7 +103,8 @@ def make_isosurface(
     )
     options = RenderOptions(speculation=speculation, memory_budget=memory_budget, detailed=detailed)
     prop = style_isosurface(image, isovalue, style, options)
-    prop.GetMapper().SetRate(_in_range("rate", rate, 0, 32, above=True))
+    if rate is not None:
+        prop.GetMapper().SetRate(_in_range("rate", rate, 0, 32, above=True))
     prop.GetMapper().SetMaskNonFinite(bool(mask_nan))
     return prop
 
@@ -111,7 +114,8 @@ def style_isosurface(
 ) -> vtkIsosurfaceVolume:
     """Make a prop as `make_isosurface` does, a plain image at the mapper's own rate."""
     mapper = vtkProgressiveIsosurfaceMapper()
-    mapper.SetInputData(as_image(image))
+    image = as_image(image)
+    mapper.SetInputData(image)
     mapper.SetLitLikeMeshes(True)  # users expect the light that a contour's mesh would get
     mapper.SetSpeculationLimit(_speculation_limit(options.speculation))
     mapper.SetMemoryBudget(int(_in_range("memory_budget", options.memory_budget, 0, 2**62)))
@@ -120,7 +124,25 @@ def style_isosurface(
     prop.SetMapper(mapper)
     prop.SetProperty(_material(style))
     _set_isovalues(prop, isovalue, style)
+    # a compressed volume can be judged now, a plain image is when the mapper compresses it
+    doubt = doubts(image, isovalue) if is_compressed(image) else None
+    if doubt is not None:
+        warn_user(doubt)
+    _pass_warnings_on(mapper, {doubt} if doubt is not None else set())
     return prop
+
+
+def _pass_warnings_on(mapper: vtkProgressiveIsosurfaceMapper, told: set[str]) -> None:
+    """Turn the mapper's warnings into Python's, each text once that was not told before."""
+
+    def tell(_mapper: object, _event: str, text: str) -> None:
+        for message in set(messages_of(text)) - told:
+            told.add(message)
+            warn_user(message)
+
+    tell.CallDataType = "string0"  # type: ignore[attr-defined]
+    observe: Any = mapper.AddObserver
+    observe("WarningEvent", tell)
 
 
 def _material(style: SurfaceStyle) -> vtkVolumeProperty:
@@ -135,13 +157,16 @@ def _material(style: SurfaceStyle) -> vtkVolumeProperty:
 
 def _set_isovalues(prop: vtkIsosurfaceVolume, isovalue: Isovalues, style: SurfaceStyle) -> None:
     """Set isovalues with the colours and opacities that they keep."""
-    given = [isovalue] if isinstance(isovalue, str) else as_list(isovalue, _is_number)
+    try:
+        given = finite_list("isovalue", isovalue)
+    except TypeError as error:
+        raise ValueError(str(error)) from None
     if not 1 <= len(given) <= MAX_ISOVALUES:
         raise ValueError(f"isovalue: give 1 to {MAX_ISOVALUES} isovalues, not {len(given)}")
     opacities = _opacities(style.opacity)
     check_count("opacity", opacities, given)
     for i, value in enumerate(given):
-        prop.GetProperty().GetIsoSurfaceValues().SetValue(i, _finite("isovalue", value))
+        prop.GetProperty().GetIsoSurfaceValues().SetValue(i, value)
     set_opacities(prop, opacities)
     if isinstance(style.color, vtkColorTransferFunction):
         prop.GetProperty().SetColor(style.color)
@@ -150,7 +175,7 @@ def _set_isovalues(prop: vtkIsosurfaceVolume, isovalue: Isovalues, style: Surfac
 
 
 def _opacities(opacity: float | Sequence[float]) -> list[float]:
-    given = [opacity] if isinstance(opacity, str) else as_list(opacity, _is_number)
+    given = [opacity] if isinstance(opacity, str) else as_list(opacity, is_number)
     return [_in_range("opacity", each, 0, 1) for each in given]
 
 
@@ -177,21 +202,12 @@ def _speculation_limit(speculation: bool | int) -> int:
     return int(_in_range("speculation", speculation, 1, MAX_SPECULATION))
 
 
-def _is_number(value: object) -> bool:
-    return isinstance(value, Real)
-
-
-def _finite(name: str, value: Any) -> float:
-    if not _is_number(value) or not math.isfinite(value):
-        raise ValueError(f"{name} must be a finite number, got {value!r}")
-    return float(value)
-
-
 def _in_range(name: str, value: Any, low: float, high: float, *, above: bool = False) -> Any:
     """Return a number if low ≤ value ≤ high, or low < value when `above`; otherwise raise."""
-    if not _is_number(value):
+    if not is_number(value):
         raise TypeError(f"{name} must be a number, got {value!r}")
+    value = float(value)
     if not (low < value if above else low <= value) or not value <= high:
         bounds = f"{'(' if above else '['}{low}, {high}]"
-        raise ValueError(f"{name} must be in {bounds}, got {value}")
+        raise ValueError(f"{name} must be in {bounds}, got {value:g}")
     return value

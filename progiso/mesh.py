@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
 import struct
 from collections.abc import Callable
-from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -18,10 +16,11 @@ from vtkmodules.vtkIOGeometry import vtkOBJWriter, vtkSTLWriter
 from vtkmodules.vtkIOPLY import vtkPLYWriter
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
-from ._typing import FilePath, ImageLike, Isovalues, Progress
+from ._numbers import finite_list
+from ._typing import FilePath, ImageLike, Isovalues, Progress, Rate
 from ._vtk import observe_progress, vtk_errors
-from .appearance import as_list
-from .compression import as_compressed, check_array, find_array, is_compressed
+from ._warnings import warn_user
+from .compression import as_compressed, check_array, doubts, find_array, is_compressed
 from .geometry import GHOSTS, as_image, cell_centres
 from .io.files import DISK_FULL, atomic_path, check_bytes, check_output
 from .io.vtk_files import write_with
@@ -36,7 +35,8 @@ def contour(
     normals: bool = True,
     gradients: bool = False,
     scalars: bool = True,
-    rate: float | None = None,
+    rate: Rate = None,
+    tolerance: float | None = None,
     array: str | None = None,
     component: int = 0,
     mask_nan: bool = False,
@@ -59,8 +59,10 @@ def contour(
         Whether to compute the point arrays ``Normals``, of unit length, and ``Gradients``.
     scalars : bool, default: True
         Whether to store the isovalue at every point, under the array's name.
-    rate : float, optional
+    rate : float or "auto", optional
         Compress a plain image first, to this many bits per sample, in (0, 32].
+    tolerance : float, optional
+        Compress a plain image first, at the least rate that keeps every sample within it.
     array : str, optional
         Point or cell array of a plain image, by default as in `compress`; the samples of cells lie
         in their centres.
@@ -100,13 +102,19 @@ def contour(
     """
     values = _isovalues(isovalues)
     image = as_image(image)
-    if mask_nan and rate is None and not is_compressed(image):
+    compresses = rate is not None or tolerance is not None
+    if mask_nan and not compresses and not is_compressed(image):
         raise ValueError("mask_nan takes a rate: the contour of a plain image hides nothing")
-    if rate is not None:
-        options = CompressionOptions(rate=rate, array=array, component=component, mask_nan=mask_nan)
+    if compresses:
+        options = CompressionOptions(
+            rate=rate, tolerance=tolerance, array=array, component=component, mask_nan=mask_nan
+        )
         image = as_compressed(image, options)
     if is_compressed(image):
         check_array(image, array)
+        doubt = doubts(image, values)
+        if doubt is not None:
+            warn_user(doubt)
         extractor = vtkZFPContour()
         extractor.SetNumberOfThreads(threads)
         extractor.SetInputData(image)
@@ -128,15 +136,10 @@ def contour(
 
 def _isovalues(isovalues: Isovalues) -> list[float]:
     """Return one or several isovalues as a list, or raise where one is no finite number."""
-    values = as_list(isovalues, lambda given: isinstance(given, Real))
-    for value in values:
-        if not isinstance(value, Real):
-            raise TypeError(f"an isovalue must be a number, got {value!r}")
-        if not math.isfinite(value):
-            raise ValueError(f"an isovalue must be finite, got {value:g}")
+    values = finite_list("isovalue", isovalues)
     if not values:
         raise ValueError("there are no isovalues: give at least one")
-    return [float(value) for value in values]
+    return values
 
 
 def _plain_contour(image: vtkImageData, array: str | None, component: int) -> vtkFlyingEdges3D:

@@ -13,7 +13,8 @@ from typing import Any, TypedDict, TypeVar
 
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction
 
-from ._typing import RGB, Progress
+from ._numbers import finite, is_number
+from ._typing import RGB, Progress, Rate
 
 _Options = TypeVar("_Options")
 
@@ -22,13 +23,84 @@ _Options = TypeVar("_Options")
 class CompressionOptions:
     """What of a plain image is compressed, and how; see `progiso.compress`."""
 
-    rate: float = 8.0
+    rate: Rate = None
+    tolerance: float | None = None
     array: str | None = None
     component: int = 0
     axes: str | None = None
     mask_nan: bool = False
     threads: int = 0
     progress: Progress | None = None
+
+
+#: Bits per sample of what is not labels, where nothing else is asked for.
+DEFAULT_RATE = 8.0
+
+
+@dataclass(frozen=True)
+class RateChoice:
+    """How the rate of a compressed volume is found.
+
+    Attributes
+    ----------
+    rate : float
+        Bits per sample, in (0, 32].
+    keep_labels : bool
+        Whether labels and masks get the least rate from there on that leaves every sample on its
+        side of every half-integer.
+    tolerance : float
+        Where it is above 0, the least rate that keeps every sample within it is taken instead.
+    """
+
+    rate: float = DEFAULT_RATE
+    keep_labels: bool = False
+    tolerance: float = 0.0
+
+
+def rate_choice(rate: Rate = None, tolerance: float | None = None) -> RateChoice:
+    """Check a rate and a tolerance as `progiso.compress` takes them.
+
+    Raises
+    ------
+    TypeError
+        When the rate is no number.
+    ValueError
+        When one is out of range, or both are given.
+
+    Examples
+    --------
+    >>> rate_choice(4), rate_choice().keep_labels
+    (RateChoice(rate=4.0, keep_labels=False, tolerance=0.0), True)
+    """
+    if tolerance is not None:
+        if rate is not None and not _is_auto(rate):
+            raise ValueError(f"give either a rate or a tolerance, not {rate!r} and {tolerance!r}")
+        return RateChoice(tolerance=checked_tolerance(tolerance))
+    if rate is None:
+        return RateChoice(keep_labels=True)
+    if _is_auto(rate):
+        raise ValueError('rate="auto" takes a tolerance, the largest error of a sample')
+    if not is_number(rate):
+        raise TypeError(f'rate must be a number in (0, 32], "auto" or None, got {rate!r}')
+    bits = float(rate)
+    if not 0 < bits <= 32:
+        raise ValueError(f"rate must be in (0, 32] bits per sample, got {bits:g}")
+    return RateChoice(bits)
+
+
+def _is_auto(rate: Rate) -> bool:
+    return isinstance(rate, str) and rate == "auto"
+
+
+def checked_tolerance(tolerance: float) -> float:
+    """Return a tolerance, or raise `ValueError` unless it is a number above 0."""
+    try:
+        value = finite("tolerance", tolerance)
+    except (TypeError, ValueError):
+        value = 0.0
+    if not value > 0:
+        raise ValueError(f"tolerance must be a number above 0, got {tolerance!r}")
+    return value
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,7 +128,8 @@ class RenderOptions:
 class EncodingKeywords(TypedDict, total=False):
     """Keywords of `CompressionOptions` but for the array."""
 
-    rate: float
+    rate: Rate
+    tolerance: float | None
     component: int
     axes: str | None
     mask_nan: bool

@@ -94,8 +94,8 @@ def render(
     opacity, speculation, memory_budget, detailed
         As in `make_isosurface`.
     **compression
-        A plain image is compressed first: ``rate``, ``array``, ``component``, ``mask_nan``,
-        ``threads`` and ``progress`` as in `compress`.
+        A plain image is compressed first: ``rate``, ``tolerance``, ``array``, ``component``,
+        ``mask_nan``, ``threads`` and ``progress`` as in `compress`.
 
     Returns
     -------

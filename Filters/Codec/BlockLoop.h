@@ -108,7 +108,7 @@ bool ForEachBlock(const BlockStream& blocks, SlabRange slabs, StreamAccess acces
 #pragma omp parallel num_threads(blocks.GetNumberOfThreads())
   {
     BlockCodec codec(blocks);
-    SampleSummary mine = before;
+    SampleSummary mine = before.BeginWithCounts();
     double reported = 0.0;
 #pragma omp for schedule(dynamic, GroupsPerTurn)
     for (vtkTypeInt64 group = firstGroup; group < lastGroup; ++group)

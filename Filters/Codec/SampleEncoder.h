@@ -8,18 +8,22 @@
  * arbitrary values, are encoded as zero, and counted. After a visible value that is not finite (as
  * float32), values are still counted but no longer encoded.
  *
- * Hidden samples get values that cost zfp little, and the summary leaves them out.
+ * Hidden samples get values that cost zfp little, and the summary leaves them out. Every block is
+ * decoded again, to tell its error.
  */
 #ifndef SampleEncoder_h
 #define SampleEncoder_h
 
 #include "Codec/HiddenSamples.h"
+#include "Codec/MacrocellErrors.h"
 #include "Codec/Progress.h"
 #include "Codec/SampleSummary.h"
 #include "Codec/SampleUnits.h"
 
 #include "vtkBlockMask.h"
 #include "vtkType.h"
+
+#include <memory>
 
 class BlockStream;
 class vtkDataArray;
@@ -44,6 +48,7 @@ public:
    */
   const SampleSummary& GetSummary() const { return this->Summary; }
   const vtkBlockMask& GetMask() const { return this->Mask; }
+  const MacrocellErrors& GetErrors() const { return *this->Errors; }
   ///@}
 
 private:
@@ -51,6 +56,7 @@ private:
 
   SampleSummary Summary;
   vtkBlockMask Mask;
+  std::unique_ptr<MacrocellErrors> Errors; // null before the first slab
 };
 
 #endif

@@ -63,6 +63,38 @@ void SampleSummary::Add(const SampleSummary& other)
   this->NaNs += other.NaNs;
   this->Infinities += other.Infinities;
   this->TinyBlocks += other.TinyBlocks;
+  this->AddError(other.LargestError, other.ErrorSum, other.ErrorCount);
+}
+
+//------------------------------------------------------------------------------
+void SampleSummary::AddError(double largest, double sum, vtkTypeInt64 count)
+{
+  this->LargestError = std::max(this->LargestError, largest);
+  this->ErrorSum += sum;
+  this->ErrorCount += count;
+}
+
+//------------------------------------------------------------------------------
+double SampleSummary::GetMeanError() const
+{
+  const double mean = this->ErrorCount > 0 ? this->ErrorSum / this->ErrorCount : 0.0;
+  if (!(mean > 0.0) || !std::isfinite(mean))
+  {
+    return mean;
+  }
+  int exponent = 0;
+  const double fraction = std::frexp(mean, &exponent);
+  const double steps = 4096.0;
+  return std::ldexp(std::round(fraction * steps) / steps, exponent);
+}
+
+//------------------------------------------------------------------------------
+SampleSummary SampleSummary::BeginWithCounts() const
+{
+  SampleSummary summary = *this;
+  summary.LargestError = summary.ErrorSum = 0.0;
+  summary.ErrorCount = 0;
+  return summary;
 }
 
 //------------------------------------------------------------------------------

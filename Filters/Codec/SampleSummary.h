@@ -29,6 +29,9 @@ struct SampleSummary
   vtkTypeInt64 NaNs = 0;
   vtkTypeInt64 Infinities = 0;
   vtkTypeInt64 TinyBlocks = 0; ///< encoded as zero, see SampleEncoder
+  double LargestError = 0.0;   ///< of encoding, in the samples' own units
+  double ErrorSum = 0.0;
+  vtkTypeInt64 ErrorCount = 0; ///< samples in the sum
 
   /// Returns minimum and maximum, or zeros if no finite sample was added.
   std::array<double, 2> GetRange() const;
@@ -44,6 +47,15 @@ struct SampleSummary
   void Add(float value);
   void AddBlock(const float samples[BlockSamples]);
   void Add(const SampleSummary& other);
+
+  /// Adds what encoding did to some samples.
+  void AddError(double largest, double sum, vtkTypeInt64 count);
+
+  /// Returns the mean error, to three digits: sums depend on the order of threads.
+  double GetMeanError() const;
+
+  /// Returns a summary that begins with this one's counts, without its errors.
+  SampleSummary BeginWithCounts() const;
 
   /// Takes back another summary's counts, which this one began with.
   void SubtractCounts(const SampleSummary& other);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CompressedVolumeFormat.h"
 
+#include "Codec/MacrocellErrors.h"
 #include "Format/Checksums.h"
 #include "Format/FieldArrays.h"
 #include "Pieces/PieceExtents.h"
@@ -10,6 +11,7 @@
 #include "vtkCompressedVolume.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
+#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkIntArray.h"
 #include "vtkStringArray.h"
@@ -41,6 +43,8 @@ const char* const AssociationName = "ProgIso.ZFP.Association";
 const char* const ExtentName = "ProgIso.ZFP.Extent";
 const char* const OffsetName = "ProgIso.ZFP.Offset";
 const char* const ScaleName = "ProgIso.ZFP.Scale";
+const char* const ErrorName = "ProgIso.ZFP.Error";
+const char* const MacrocellErrorsName = "ProgIso.ZFP.MacrocellErrors";
 const char* const HiddenSamplesName = "ProgIso.ZFP.HiddenSamples";
 const char* const HiddenCellsName = "ProgIso.ZFP.HiddenCells";
 const char* const PageChecksumsName = "ProgIso.ZFP.PageChecksums";
@@ -48,7 +52,8 @@ const char* const MetadataChecksumName = "ProgIso.ZFP.MetadataChecksum";
 
 const char* const AllNames[] = { VersionName, StreamName, BlockBitsName, DimensionsName, RangeName,
   ScalarTypeName, ArrayNameName, ComponentName, AssociationName, ExtentName, OffsetName, ScaleName,
-  HiddenSamplesName, HiddenCellsName, PageChecksumsName, MetadataChecksumName };
+  ErrorName, MacrocellErrorsName, HiddenSamplesName, HiddenCellsName, PageChecksumsName,
+  MetadataChecksumName };
 
 // From this version of the format on, checksums are there; before, there were none.
 constexpr int FirstVersionWithChecksums = 3;
@@ -385,6 +390,39 @@ Status ReadUnits(vtkImageData* image, Volume* volume)
 }
 
 //------------------------------------------------------------------------------
+Status ReadErrors(vtkImageData* image, Volume* volume)
+{
+  vtkFieldData* fields = image->GetFieldData();
+  if (fields->HasArray(ErrorName))
+  {
+    double errors[2];
+    if (Status status = GetReals(fields, ErrorName, 2, errors); !status)
+    {
+      return status;
+    }
+    if (!(errors[0] >= 0.0 && errors[1] >= 0.0))
+    {
+      return Status::Error(ErrorName, " is not two numbers from 0");
+    }
+    volume->SetLargestError(errors[0]);
+    volume->SetMeanError(errors[1]);
+  }
+  if (fields->HasArray(MacrocellErrorsName))
+  {
+    auto* macrocells =
+      vtkArrayDownCast<vtkFloatArray>(fields->GetAbstractArray(MacrocellErrorsName));
+    const vtkTypeInt64 number = MacrocellErrors::NumberFor(volume->GetDimensions());
+    if (!macrocells || macrocells->GetNumberOfComponents() != 3 ||
+      macrocells->GetNumberOfTuples() != number)
+    {
+      return Status::Error(MacrocellErrorsName, " is not ", number, " triples of floats");
+    }
+    volume->SetMacrocellErrors(macrocells);
+  }
+  return {};
+}
+
+//------------------------------------------------------------------------------
 Status ReadHidden(vtkImageData* image, Volume* volume)
 {
   vtkFieldData* fields = image->GetFieldData();
@@ -436,7 +474,7 @@ Status CompressedVolumeFormat::Read(vtkImageData* image, vtkCompressedVolume* vo
                                : "there is no image");
   }
   for (const auto& read : { ReadNumbers, ReadGeometry, ReadArrayName, ReadStream, ReadUnits,
-         ReadHidden, CheckMetadata, CheckStream })
+         ReadErrors, ReadHidden, CheckMetadata, CheckStream })
   {
     if (Status status = read(image, volume); !status)
     {
@@ -466,6 +504,16 @@ void CompressedVolumeFormat::Write(vtkCompressedVolume* volume, vtkImageData* im
   {
     StoreValue<vtkDoubleArray>(fields, OffsetName, volume->GetOffset());
     StoreValue<vtkDoubleArray>(fields, ScaleName, volume->GetScale());
+  }
+  if (volume->GetLargestError() >= 0.0)
+  {
+    const double errors[] = { volume->GetLargestError(), volume->GetMeanError() };
+    StoreValues<vtkDoubleArray>(fields, ErrorName, errors, 2);
+  }
+  if (vtkFloatArray* macrocells = volume->GetMacrocellErrors())
+  {
+    macrocells->SetName(MacrocellErrorsName);
+    fields->AddArray(macrocells);
   }
   StoreMask(fields, HiddenSamplesName, volume->GetHiddenSamples());
   StoreMask(fields, HiddenCellsName, volume->GetHiddenCells());

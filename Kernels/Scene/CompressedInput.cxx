@@ -74,6 +74,7 @@ Status Compress(const CompressedInput::Choice& choice, vtkSmartPointer<vtkImageD
   compress->SetRate(choice.Rate);
   compress->SetComponent(choice.Component);
   compress->SetMaskNonFinite(choice.MaskNonFinite);
+  compress->SetKeepLabels(choice.KeepLabels);
   ErrorKeeper errors(compress);
   compress->Update();
   compressed = compress->GetOutput();
@@ -126,7 +127,8 @@ Status CompressedInput::Update(const Choice& choice)
   // rate, component and mask of a compressed volume are fixed
   vtkDataArray* array = choice.Array;
   const Key key = { choice.Image, choice.Image->GetMTime(), array, array ? array->GetMTime() : 0,
-    array ? choice.Rate : 0.0, array ? choice.Component : 0, array && choice.MaskNonFinite };
+    array ? choice.Rate : 0.0, array ? choice.Component : 0, array && choice.MaskNonFinite,
+    array && choice.KeepLabels };
   if (this->Image && key == this->Source)
   {
     return Status();

@@ -30,6 +30,7 @@ public:
     int Component = 0;
     double Rate = 8.0;
     bool MaskNonFinite = false;
+    bool KeepLabels = false;
   };
 
   CompressedInput();
@@ -49,10 +50,10 @@ public:
   vtkMTimeType GetTime() const { return this->Time; }
 
 private:
-  /// Image and array with their times, rate, component and mask: a change of any of them changes
-  /// the volume.
+  /// Image and array with their times, rate, component, mask and labels: a change of any of them
+  /// changes the volume.
   using Key =
-    std::tuple<vtkImageData*, vtkMTimeType, vtkDataArray*, vtkMTimeType, double, int, bool>;
+    std::tuple<vtkImageData*, vtkMTimeType, vtkDataArray*, vtkMTimeType, double, int, bool, bool>;
 
   vtkSmartPointer<vtkImageData> Image;
   vtkNew<vtkCompressedVolume> Volume;

@@ -33,7 +33,7 @@ vtkDataArray* FindArray(const ArrayChoice& choice, vtkImageData* image, bool& ce
 Status InputArrays::UpdateValues(const ArrayChoice& choice, vtkImageData* image)
 {
   CompressedInput::Choice values = { image, nullptr, false, choice.Component, choice.Rate,
-    choice.MaskNonFinite };
+    choice.MaskNonFinite, choice.KeepLabels };
   if (!vtkCompressedVolume::IsCompressed(image))
   {
     values.Array = FindArray(choice, image, values.CellData);
@@ -48,7 +48,7 @@ Status InputArrays::UpdateValues(const ArrayChoice& choice, vtkImageData* image)
 Status InputArrays::UpdateColorsFromImage(const ArrayChoice& choice, vtkImageData* image)
 {
   CompressedInput::Choice colors = { image, nullptr, this->HasCellData(), choice.ColorComponent,
-    choice.Rate, choice.MaskNonFinite };
+    choice.Rate, choice.MaskNonFinite, choice.KeepLabels };
   const bool compressed = image && vtkCompressedVolume::IsCompressed(image);
   if (image && !compressed)
   {
@@ -73,8 +73,8 @@ Status InputArrays::UpdateColorsFromArray(const ArrayChoice& choice, vtkImageDat
       "\" beside the one that is rendered: name one that it has, or connect the colours' volume to "
       "port 1");
   }
-  return this->UpdateColors(
-    { image, array, cellData, choice.ColorComponent, choice.Rate, choice.MaskNonFinite });
+  return this->UpdateColors({ image, array, cellData, choice.ColorComponent, choice.Rate,
+    choice.MaskNonFinite, choice.KeepLabels });
 }
 
 Status InputArrays::UpdateColors(const CompressedInput::Choice& choice)

@@ -24,6 +24,7 @@ struct ArrayChoice
   int ColorComponent = 0;
   double Rate = 8.0;
   bool MaskNonFinite = false;
+  bool KeepLabels = false;
 };
 
 class InputArrays

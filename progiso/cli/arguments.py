@@ -44,6 +44,14 @@ def vector(text: str) -> tuple[float, ...]:
         raise argparse.ArgumentTypeError(f"'{text}' does not look like 0.5,-1,0.25") from None
 
 
+def bits_per_sample(text: str) -> float | str:
+    """Parse a rate: a number, or "auto"."""
+    try:
+        return text if text == "auto" else float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}' does not look like 8, 12.5 or auto") from None
+
+
 def byte_count(text: str) -> int:
     """Parse a number of bytes with an optional unit."""
     number, unit = _pattern(text, r"(\d+(?:\.\d+)?)([KMG]?)", "200000000, 200M or 1.5G")

@@ -23,7 +23,7 @@ from ..io import Selection, Source, open_source
 from ..io.files import atomic_path, check_output, check_outputs
 from ..io.volumes import COMPRESSED_SUFFIXES, PLAIN_SUFFIXES, compress_source
 from ..mesh import SURFACE_SUFFIXES
-from ..options import CompressionOptions, RenderOptions, SurfaceStyle
+from ..options import DEFAULT_RATE, CompressionOptions, RenderOptions, SurfaceStyle
 from .info import describe_source, file_bytes, verify_source
 from .progress import progress_bar
 
@@ -88,12 +88,11 @@ def _remark_on_compressed(image: vtkImageData, parsed: argparse.Namespace) -> No
     if not progiso.is_compressed(image):
         return
     about = progiso.describe(image)
-    for name in ("rate", "component"):
-        given, held = getattr(parsed, name), about[name]
+    for name, kept in (("rate", "rate"), ("tolerance", "rate"), ("component", "component")):
+        given, held = getattr(parsed, name), about[kept]
         if given not in (None, held):
-            _remark(
-                f"--{name} {given:g} is ignored: the file is compressed, its {name} is {held:g}"
-            )
+            text = given if isinstance(given, str) else f"{given:g}"
+            _remark(f"--{name} {text} is ignored: the file is compressed, its {kept} is {held:g}")
 
 
 def compress(parsed: argparse.Namespace) -> None:
@@ -111,19 +110,19 @@ def compress(parsed: argparse.Namespace) -> None:
     about = progiso.describe(volume)
     print(
         f"{parsed.out}: {parsed.out.stat().st_size} bytes, {about['stream_bytes']} of compressed "
-        f"samples, {about['rate']:g} bits per sample"
+        f"samples, {about['rate']:g} bits per sample, errors up to {about['largest_error']:.3g}"
     )
+    if parsed.rate is None and parsed.tolerance is None and about["rate"] != DEFAULT_RATE:
+        _remark(f"these are labels, which {about['rate']:g} bits per sample keep apart")
 
 
 def rate(parsed: argparse.Namespace) -> None:
     image = _read(parsed)
+    given = _given(parsed, CompressionOptions)
+    tolerance = given.pop("tolerance")
     with progress_bar("Trying rates") as progress:
         least = progiso.least_rate(
-            image,
-            parsed.tolerance,
-            relative=parsed.relative,
-            progress=progress,
-            **_given(parsed, CompressionOptions),
+            image, tolerance, relative=parsed.relative, progress=progress, **given
         )
     print(f"{least:.9g}")  # all digits of a 64th, for `compress --rate`
 

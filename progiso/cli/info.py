@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkDataArray
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkImageData
 
 import progiso
@@ -94,10 +95,16 @@ def _describe_arrays(attributes: vtkDataSetAttributes) -> dict[str, Any]:
         array.GetName() or "(unnamed)": {
             "type": array.GetDataTypeAsString(),
             "components": array.GetNumberOfComponents(),
-            **({"range": list(array.GetRange())} if hasattr(array, "GetRange") else {}),
+            **({"range": _range_of(array)} if hasattr(array, "GetRange") else {}),
         }
         for array in arrays
     }
+
+
+def _range_of(array: vtkDataArray) -> list[Any]:
+    """Return an array's least and greatest value; of several components a pair for each."""
+    ranges = [list(array.GetRange(i)) for i in range(array.GetNumberOfComponents())]
+    return ranges[0] if len(ranges) == 1 else ranges
 
 
 def _describe_samples(source: Source, progress: Progress | None) -> dict[str, Any]:

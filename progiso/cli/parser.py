@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import NoReturn, TypeAlias
+from typing import Any, NoReturn, TypeAlias
 
 import progiso
 
@@ -17,7 +18,16 @@ from ..io.volumes import PLAIN_SUFFIXES
 from ..mesh import SURFACE_SUFFIXES
 from ..verify.command import add_verify
 from . import commands
-from .arguments import byte_count, number_or_name, orbit, sides, size, vector, zfp_header
+from .arguments import (
+    bits_per_sample,
+    byte_count,
+    number_or_name,
+    orbit,
+    sides,
+    size,
+    vector,
+    zfp_header,
+)
 from .commands import about_scan
 
 _Run: TypeAlias = Callable[[argparse.Namespace], None]
@@ -27,7 +37,14 @@ _READABLE = "a file of a known format, a folder of slices, file.h5:/array, or na
 
 
 class _Parser(argparse.ArgumentParser):
-    """Reports a wrong argument in one line, without repeating the usage."""
+    """Reports a wrong argument in one line, without repeating the usage.
+
+    What begins as a negative number is a value: -1e-3, -.5 and -1,0,0.
+    """
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: error: {message} (see {self.prog} --help)\n")
@@ -92,10 +109,15 @@ def _add_input(command: argparse.ArgumentParser, name: str = "file") -> None:
 
 
 def _add_compression(
-    command: argparse.ArgumentParser, rate: str = "bits per sample, in (0, 32] (default: 8)"
+    command: argparse.ArgumentParser,
+    rate: str = "bits per sample, in (0, 32], or auto (default: 8, and more for labels)",
 ) -> None:
     """Add the choice of a plain image's samples, and their rate."""
-    command.add_argument("--rate", type=float, help=rate)
+    command.add_argument("--rate", type=bits_per_sample, metavar="BITS", help=rate)
+    command.add_argument(
+        "--tolerance", type=float, metavar="T",
+        help="in place of a rate: largest error of a sample, in the image's units",
+    )  # fmt: skip
     _add_samples(command)
 
 
@@ -234,7 +256,7 @@ def _add_camera(command: argparse.ArgumentParser) -> None:
     )
     command.add_argument(
         "--view", type=vector, metavar="X,Y,Z",
-        help="from the volume to the camera, without --orbit (default: 0.45,1,0.3); --view=-1,0,0",
+        help="from the volume to the camera, without --orbit (default: 0.45,1,0.3)",
     )  # fmt: skip
     command.add_argument(
         "--up", type=vector, metavar="X,Y,Z",

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,11 +15,16 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkDataArray
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
-from .._typing import Array, Dimensions, Progress
+from .._typing import Array, Dimensions, Progress, Rate
 from .._vtk import vtk_errors
+from .._warnings import warn_user
 from ..geometry import plain_samples
-from ..options import CompressionOptions
-from ..vtkProgIsoFilters import vtkCompressedVolumeBuilder, vtkSampleUnitsFinder
+from ..options import CompressionOptions, RateChoice, rate_choice
+from ..vtkProgIsoFilters import (
+    vtkCompressedVolumeBuilder,
+    vtkSampleRateFinder,
+    vtkSampleUnitsFinder,
+)
 
 #: A function of a slice's number that returns the slice, of shape (height, width).
 _SliceAt = Callable[[int], npt.ArrayLike]
@@ -32,7 +37,8 @@ def compress_slabs(
     slabs: Iterable[Array] | _SliceAt,
     dimensions: Sequence[int],
     *,
-    rate: float = 8.0,
+    rate: Rate = None,
+    tolerance: float | None = None,
     name: str = "scalars",
     mask_nan: bool = False,
     units: tuple[float, float] | None = None,
@@ -56,8 +62,12 @@ def compress_slabs(
         is called from several threads at once. Masked samples (`numpy.ma`) are hidden.
     dimensions : sequence of int
         Samples along x (width), y (height) and z, each at least 2.
-    rate : float, default: 8
-        Bits per sample, in (0, 32].
+    rate : float or "auto", optional
+        Bits per sample, in (0, 32], or what `compress` chooses: for that, `slabs` are gone through
+        several times where they are labels, or where there is a tolerance. Slabs that come once
+        take a number, by default 8.
+    tolerance : float, optional
+        As in `compress`, for slabs that can be gone through several times.
     name : str, default: "scalars"
         Name of the array.
     mask_nan : bool, default: False
@@ -99,12 +109,80 @@ def compress_slabs(
     """
     width, height, depth = (int(n) for n in dimensions)
     size = (width, height, depth)
-    options = CompressionOptions(rate=rate, mask_nan=mask_nan, threads=threads, progress=progress)
+    options = CompressionOptions(
+        rate=rate, tolerance=tolerance, mask_nan=mask_nan, threads=threads, progress=progress
+    )
     passes = _passes(slabs, size, threads)
-    if units is None and callable(passes):
-        units = units_of(passes())
-    layers = passes() if callable(passes) else passes
-    return build(layers, size, name, options, units=units)
+    if callable(passes):
+        return compress_passes(passes, size, name, options, units=units)
+    return build(passes, size, name, options, units=units)
+
+
+def compress_passes(
+    slabs: Callable[[], Iterable[npt.ArrayLike | vtkDataArray]],
+    dimensions: Dimensions,
+    name: str,
+    options: CompressionOptions,
+    *,
+    units: tuple[float, float] | None = None,
+    components: int = 1,
+) -> vtkImageData:
+    """Compress slabs of whole layers of blocks that can be gone through several times.
+
+    Units and rate are those that `compress` chooses for the whole, whose errors are raised, too.
+    ``slabs()`` begins a pass; what it yields is described in `build`.
+    """
+    choice = rate_choice(options.rate, options.tolerance)
+    if units is None:
+        units = units_of(slabs(), component=options.component, components=components)
+    if choice.tolerance or choice.keep_labels:
+        rate = _find_rate(slabs, dimensions, options, choice, units, components)
+        options = replace(options, rate=rate, tolerance=None)
+    return build(slabs(), dimensions, name, options, units=units, components=components)
+
+
+def _find_rate(
+    slabs: Callable[[], Iterable[npt.ArrayLike | vtkDataArray]],
+    dimensions: Dimensions,
+    options: CompressionOptions,
+    choice: RateChoice,
+    units: tuple[float, float],
+    components: int,
+) -> float:
+    """Find the rate that a tolerance asks for, or that labels need, in some passes."""
+    finder = vtkSampleRateFinder()
+    finder.SetOffset(units[0])
+    finder.SetScale(units[1])
+    finder.SetMaskNonFinite(bool(options.mask_nan))
+    finder.SetNumberOfThreads(options.threads)
+
+    def go_through(add: Callable[..., bool]) -> None:
+        finder.Start(dimensions)
+        with vtk_errors("cannot compress"):
+            for slab in slabs():
+                samples, hidden = _vtk_arrays(slab, options.component, components)
+                if not add(samples, options.component, hidden):
+                    break
+
+    if choice.tolerance:
+        finder.SetTolerance(choice.tolerance)
+    else:
+        go_through(finder.AddForLabels)
+        if not finder.FindsLabels():
+            return choice.rate
+        finder.SetRate(choice.rate)
+    before = 0.0
+    while finder.GetRate() != before and not finder.GetLeastError():
+        before = finder.GetRate()
+        go_through(finder.AddSlab)
+    if not finder.GetLeastError():
+        return finder.GetRate()
+    if choice.tolerance:
+        raise ValueError(
+            f"no rate keeps the samples within {choice.tolerance:g}: at 32 bits some are off by "
+            f"{finder.GetLeastError():g}"
+        )
+    return 32.0
 
 
 def units_of(
@@ -168,7 +246,10 @@ def build(
     builder.SetMaskNonFinite(bool(options.mask_nan))
     builder.SetOffset(offset)
     builder.SetScale(scale)
-    _require(builder.Start(dimensions, options.rate), builder)
+    choice = rate_choice(options.rate, options.tolerance)
+    if choice.tolerance:
+        raise ValueError("slabs that come once take a rate, not a tolerance")
+    _require(builder.Start(dimensions, choice.rate), builder)
     finder = vtkSampleUnitsFinder() if units is None else None
     for slab in slabs:
         samples, hidden = _vtk_arrays(slab, options.component, components)
@@ -182,7 +263,7 @@ def build(
     if not builder.Finish(image):
         raise RuntimeError(f"cannot compress: {builder.GetErrorMessage()}{_advice(finder)}")
     if _advice(finder):
-        warnings.warn(f"float32 cannot hold the samples{_advice(finder)}", stacklevel=3)
+        warn_user(f"float32 cannot hold the samples{_advice(finder)}")
     return image
 
 

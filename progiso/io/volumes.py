@@ -12,15 +12,15 @@ from vtkmodules.vtkCommonCore import vtkDataArray
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from .._typing import Array, FilePath, ImageLike, Progress
-from ..compression import checked_rate, compress_with, is_compressed
+from ..compression import compress_with, is_compressed
 from ..geometry import as_image
-from ..options import CompressionKeywords, CompressionOptions
+from ..options import CompressionKeywords, CompressionOptions, rate_choice
 from .files import atomic_path, check_output
 from .formats import open_source, suffix_of
 from .metaimage import write_metaimage
 from .nifti import write_nifti
 from .raw import write_raw
-from .slabs import build, units_of
+from .slabs import compress_passes
 from .source import Selection, Source
 from .vtk_files import write_vti
 from .zfp import write_zfp
@@ -157,17 +157,17 @@ def compress_file(
 def compress_source(source: Source, options: CompressionOptions) -> vtkImageData:
     """Compress a source, some slices at a time unless it holds more than samples.
 
-    The samples are read twice where float32 may not hold them: the first time to choose units. The
-    array has been chosen when the source was opened.
+    The samples are read twice where float32 may not hold them, the first time to choose units, and
+    several times where they are labels, or are to be within a tolerance. The array has been chosen
+    when the source was opened.
     """
-    checked_rate(options.rate)
+    rate_choice(options.rate, options.tolerance)
     if source.more_than_samples:
         image = source.image(_half(options.progress, 0))
         return compress_with(image, replace(options, progress=_half(options.progress, 1)))
     about, count = source.about, source.about.components
-    units = units_of(_slabs(source), component=options.component, components=count)
-    volume = build(
-        _slabs(source), about.dimensions, about.name, options, units=units, components=count
+    volume = compress_passes(
+        lambda: _slabs(source), about.dimensions, about.name, options, components=count
     )
     source.place(volume)
     return volume

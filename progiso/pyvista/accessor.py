@@ -37,16 +37,16 @@ class ImageAccessor:
         self._image = image
 
     def compress(
-        self, *, scalars: str | None = None, **options: Unpack[EncodingKeywords]
+        self, *, scalars: Any = None, **options: Unpack[EncodingKeywords]
     ) -> pyvista.ImageData:
         """Compress one array with fixed-rate ZFP, see :func:`progiso.compress`.
 
         Parameters
         ----------
-        scalars : str, optional
-            Point or cell array; by default the active scalars.
+        scalars : str or array, optional
+            Point or cell array, by its name or itself; by default the active scalars.
         **options
-            ``rate``, ``component``, ``mask_nan``, ``threads`` and ``progress`` as in
+            ``rate``, ``tolerance``, ``component``, ``mask_nan``, ``threads`` and ``progress`` as in
             :func:`progiso.compress`.
 
         Returns

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +12,7 @@ import pyvista
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPlane, vtkPlaneCollection
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction
 
+from .._numbers import finite_list, is_number
 from .._typing import RGB, ImageLike, Isovalues, Vector
 from ..appearance import as_list, is_color
 from ..compression import as_compressed, describe
@@ -45,7 +45,7 @@ _SLIDER_ARGUMENTS = {
 class ActorKeywords(PlotterKeywords, total=False):
     """Keywords of `add_isosurface`, for the methods that pass them on."""
 
-    scalars: str | None
+    scalars: Any
     color: Any
     cmap: Any
     clim: float | tuple[float, float] | None
@@ -66,7 +66,7 @@ def add_isosurface(
     volume: ImageLike,
     isovalue: Isovalues,
     *,
-    scalars: str | None = None,
+    scalars: Any = None,
     color: Any = None,
     cmap: Any = None,
     clim: float | tuple[float, float] | None = None,
@@ -97,8 +97,8 @@ def add_isosurface(
     isovalue : float or sequence of float
         In the units of the volume's values; at most 16. A whole number is an isovalue too, not a
         count: for that give ``numpy.linspace(low, high, count)``.
-    scalars : str, optional
-        Point or cell array of a plain image; by default the active scalars.
+    scalars : str or array, optional
+        Point or cell array of a plain image, by its name or itself; by default the active scalars.
     color : ColorLike or sequence of ColorLike, optional
         Anything pyvista takes for a colour, or one such for each isovalue, which it keeps when it
         is changed. By default the theme's for one isovalue; several are coloured by `cmap`.
@@ -132,7 +132,7 @@ def add_isosurface(
     **options
         ``ambient``, ``diffuse``, ``specular``, ``specular_power``, ``speculation``,
         ``memory_budget`` and ``detailed`` as in :func:`progiso.make_isosurface`; for plain data
-        ``rate``, ``component``, ``mask_nan``, ``threads`` and ``progress`` as in
+        ``rate``, ``tolerance``, ``component``, ``mask_nan``, ``threads`` and ``progress`` as in
         :func:`progiso.compress`.
 
     Returns
@@ -169,7 +169,7 @@ def add_isosurface(
     rendering = take(RenderOptions, keywords)
     image = as_compressed(volume, take(CompressionOptions, keywords, array=scalars))
     table = None
-    if cmap is not None or (color is None and not isinstance(isovalue, Real)):
+    if cmap is not None or (color is None and not is_number(isovalue)):
         if color is not None:
             raise ValueError("give either color or cmap, not both")
         table = _lookup_table(plotter, cmap, _checked_clim(clim, image), log_scale)
@@ -218,7 +218,7 @@ def add_isosurface_slider(
     compression = take(CompressionOptions, options, array=options.pop("scalars", None))
     image = as_compressed(volume, compression)
     about = describe(image)
-    low, high = about["range"] if rng is None else rng
+    low, high = about["range"] if rng is None else _ends("rng", rng)
     slider = {
         theirs: options.pop(ours) for ours, theirs in _SLIDER_ARGUMENTS.items() if ours in options
     }
@@ -243,18 +243,32 @@ def clip(
     invert: bool = True,
 ) -> None:
     """Clip a prop by one plane; see :meth:`IsosurfaceComponent.clip`."""
-    direction = _axis(normal) if isinstance(normal, str) else np.asarray(normal, float)
+    direction = _axis(normal) if isinstance(normal, str) else _vector("normal", normal)
+    if not direction.any():
+        raise ValueError("normal must not be zero, got (0, 0, 0)")
     plane = vtkPlane()
-    plane.SetOrigin(prop.GetCenter() if origin is None else origin)
+    plane.SetOrigin(*(prop.GetCenter() if origin is None else _vector("origin", origin)))
     plane.SetNormal(*(-direction if invert else direction))  # towards the side that stays
     planes = vtkPlaneCollection()
     planes.AddItem(plane)
     prop.GetMapper().SetClippingPlanes(planes)
 
 
+def _vector(name: str, given: Any) -> npt.NDArray[np.float64]:
+    """Return three finite coordinates, or raise."""
+    wanted = f"{name} must be three finite numbers, got {given!r}"
+    try:
+        vector = np.array(finite_list(name, given))
+    except (TypeError, ValueError) as error:
+        raise type(error)(wanted) from None
+    if vector.shape != (3,):
+        raise ValueError(wanted)
+    return vector
+
+
 def _axis(name: str) -> npt.NDArray[np.float64]:
     """Return the unit vector of x, -x, y and so on."""
-    if name.lstrip("+-") not in ("x", "y", "z"):
+    if name[-1:] not in tuple("xyz") or name[:-1] not in ("", "+", "-"):
         raise ValueError(f"normal must be x, y, z, -x, -y, -z or a vector, got {name!r}")
     axis = np.eye(3)["xyz".index(name[-1])]
     return -axis if name[0] == "-" else axis
@@ -275,11 +289,21 @@ def _checked_clim(clim: Any, image: vtkImageData) -> tuple[float, float]:
     if clim is None:
         low, high = describe(image)["range"]
         return low, high
-    ends: Any = (-clim, clim) if isinstance(clim, Real) else clim
-    low, high = ends
-    if not low < high:
-        raise ValueError(f"clim must be the least and the greatest isovalue, got {clim!r}")
-    return low, high
+    return _ends("clim", (-clim, clim) if is_number(clim) else clim)
+
+
+def _ends(name: str, given: Any) -> tuple[float, float]:
+    """Return two isovalues, the lesser first, or raise."""
+    wanted = f"{name} must be the least and the greatest isovalue, got {given!r}"
+    if isinstance(given, (str, bytes)):
+        raise TypeError(wanted)
+    try:
+        ends = finite_list(name, given)
+    except (TypeError, ValueError) as error:
+        raise type(error)(wanted) from None
+    if len(ends) != 2 or not ends[0] < ends[1]:
+        raise ValueError(wanted)
+    return ends[0], ends[1]
 
 
 def _lookup_table(

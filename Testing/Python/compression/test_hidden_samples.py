@@ -132,7 +132,8 @@ def test_masks_without_effect():
     expected = progiso.compress(values.T, rate=8)
     for array in (np.ma.array(values), np.ma.MaskedArray(values, False), values.view(Subclass)):
         check_same(progiso.compress(array.T, rate=8), expected)
-        assert metadata(expected, "Version")[0] == 1
+        volume = progiso.compress(array.T, rate=8)
+        assert not volume.GetFieldData().HasArray("ProgIso.ZFP.HiddenSamples")
     with pytest.raises(TypeError, match="3 dimensions, this one has 2"):
         progiso.compress(np.asmatrix(values[0]))
     everything = np.ma.MaskedArray(values, True)

@@ -94,7 +94,7 @@ REFUSALS = {
 @pytest.mark.parametrize("case", REFUSALS)
 def test_refusals_are_clear(case):
     values, dimensions, rate, words = REFUSALS[case]
-    with pytest.raises(RuntimeError, match=words):
+    with pytest.raises(ValueError if case == "rate" else RuntimeError, match=words):
         progiso.compress_slabs(dealt(values, 4), dimensions, rate=rate)
 
 
