@@ -9,6 +9,9 @@
  * again. The file has neither geometry, array name nor original type: use a VTI writer to keep
  * them.
  *
+ * A zfp file has no room for checksums: only a wrong length is noticed of a damaged one. Write .vti
+ * where that matters.
+ *
  * Errors, one message and Write() returns 0: an input that is not a valid compressed volume, or
  * that a zfp file cannot hold (a piece, custom units, hidden samples or cells); no file name; a
  * file that cannot be written (which is then removed); with header, an axis of more than 65536

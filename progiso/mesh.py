@@ -150,6 +150,11 @@ def _plain_contour(image: vtkImageData, array: str | None, component: int) -> vt
     if min(samples.GetDimensions()) < 2:
         sides = " x ".join(map(str, samples.GetDimensions()))
         raise ValueError(f"only volumes have isosurfaces, the image has {sides} samples")
+    if chosen.GetNumberOfTuples() != samples.GetNumberOfPoints():  # VTK would read beyond it
+        raise RuntimeError(
+            f"cannot contour: array '{chosen.GetName()}' has {chosen.GetNumberOfTuples()} tuples, "
+            f"the image needs {samples.GetNumberOfPoints()}"
+        )
     components = chosen.GetNumberOfComponents()
     if not 0 <= component < components:
         raise ValueError(f"component is {component}, but the array has {components}")

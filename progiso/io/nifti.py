@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 from vtkmodules.util.numpy_support import get_vtk_to_numpy_typemap, numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import VTK_ID_TYPE, VTK_LONG_LONG
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkIOImage import vtkNIFTIImageReader, vtkNIFTIImageWriter
@@ -136,6 +137,11 @@ def write_nifti(image: vtkImageData, path: FilePath) -> None:
     plain.ShallowCopy(image)
     plain.SetExtent(0, extent[1] - extent[0], 0, extent[3] - extent[2], 0, extent[5] - extent[4])
     plain.SetOrigin(0, 0, 0)
+    scalars = plain.GetPointData().GetScalars()
+    if scalars.GetDataType() == VTK_ID_TYPE:  # which the writer does not know
+        copied = numpy_to_vtk(vtk_to_numpy(scalars), array_type=VTK_LONG_LONG)
+        copied.SetName(scalars.GetName())
+        plain.GetPointData().SetScalars(copied)
     writer = vtkNIFTIImageWriter()
     writer.SetInputData(plain)
     writer.SetSFormMatrix(sform)

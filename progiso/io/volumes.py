@@ -199,8 +199,9 @@ def save(
     image : vtkmodules.vtkCommonDataModel.vtkImageData or numpy.ndarray
         Plain, or compressed (for ``.vti`` and ``.zfp``). Arrays as in `compress`.
     path : str or os.PathLike
-        ``.vti`` keeps everything. ``.zfp`` keeps a compressed volume's stream alone; reading it
-        decodes the blocks once, on all cores, to find their range. ``.mha``, ``.nii`` and
+        ``.vti`` keeps everything, and ends in a line with checksums of the file. ``.zfp`` keeps a
+        compressed volume's stream alone, without any; reading it decodes the blocks once, on all
+        cores, to find their range. ``.mha``, ``.nii`` and
         ``.nii.gz`` keep the active point scalars with the geometry, ``.raw`` (named
         ``name_WxHxD_type.raw``) the active point scalars alone.
     progress : callable, optional
@@ -218,7 +219,11 @@ def save(
     FileNotFoundError
         When the folder does not exist.
     RuntimeError
-        When writing fails; nothing is left behind.
+        When writing fails, as on a full disk; nothing is left behind.
+
+    Notes
+    -----
+    Of a link, the file that it leads to is replaced; a device or a pipe is written to.
 
     Examples
     --------

@@ -152,6 +152,16 @@ def test_the_command_line_writes_no_nan(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["nan.vti"]
 
 
+@pytest.mark.parametrize("rate", [None, 8])
+@pytest.mark.parametrize("number", [100, 800])
+def test_arrays_that_do_not_fit(number, rate):
+    """VTK's extractor would read memory beyond a shorter one."""
+    image = make_image(blobs((9, 9, 9)))
+    image.GetPointData().GetScalars().SetNumberOfTuples(number)
+    with pytest.raises(RuntimeError, match=f"has {number} tuples, the image needs 729"):
+        progiso.contour(image, 0.1, rate=rate)
+
+
 @pytest.mark.parametrize("what", ["points", "cells"])
 def test_hidden_samples_are_not_shown(what):
     """A plain surface would go through what the compressed one leaves out."""
