@@ -48,9 +48,11 @@ def reading(what: object) -> Iterator[None]:
     except _PLAIN:
         raise
     except Exception as error:
-        if f"'{what}'" in str(error):
+        named = f"'{what}'" in str(error)
+        if named and isinstance(error, (ValueError, RuntimeError)):
             raise
-        raise ValueError(f"cannot read '{what}': {reason_of(error)}") from error
+        start = "" if named else f"cannot read '{what}': "
+        raise ValueError(f"{start}{reason_of(error)}") from error
 
 
 @contextmanager

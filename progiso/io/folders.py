@@ -186,8 +186,7 @@ def _open_slices(path: Path, files: Sequence[Path], selection: Selection) -> Sou
         choose(path, kind, getattr(selection, kind) or 0, 1)
     first = _picture(series.files[0])
     for file in series.files[1:]:
-        with reading(file):
-            picture = _picture(file)
+        picture = _picture(file)
         if (picture.shape, picture.dtype) != (first.shape, first.dtype):
             raise ValueError(
                 f"'{file}' is {_told(picture)}, but '{series.files[0].name}' is {_told(first)}"
@@ -238,7 +237,8 @@ def _check_numbers(path: Path, series: Series, notes: list[str]) -> None:
 def _picture(file: Path) -> Any:
     """Return what reads a picture: it has shape, dtype, steps, notes and ``read``."""
     make: Callable[..., Any] = opener_of(_PICTURES[file.suffix.lower()], file)
-    return make(file)
+    with reading(file):
+        return make(file)
 
 
 def _is_picture(file: Path) -> bool:

@@ -30,9 +30,6 @@ _SPACINGS = {
     "pixel_size": "",
 }
 
-#: Decompressed chunks that HDF5 keeps, for regions that share them.
-_CACHE_BYTES = 2**25
-
 
 @dataclass
 class Meta:
@@ -113,13 +110,13 @@ class Hdf5Source(AxesSource):
 
 
 def _opened(path: Path) -> Any:
-    """Open a file to be read, without a lock, so that it may lie on any disk."""
+    """Open a file to be read."""
     with open(path, "rb") as file:
         if file.read(3) == b"CDF":
             raise ValueError(
                 f"'{path}' is classic NetCDF, not NetCDF-4: convert it by nccopy -k nc4"
             )
-    return h5py.File(path, "r", locking=False, rdcc_nbytes=_CACHE_BYTES)
+    return h5py.File(path, "r")
 
 
 # --- which array ----------------------------------------------------------------------------------

@@ -49,7 +49,7 @@ class PillowSlice:
             if picture.mode not in _MODES:
                 raise ValueError(f"'{file}' has samples of an unknown kind, {picture.mode!r}")
             raw = str(picture.tile[0][3]) if picture.tile else ""
-            if "16" in raw and picture.mode.startswith(("RGB", "LA")):
+            if raw.startswith(("RGB;16", "RGBA;16", "LA;16")):
                 raise ValueError(
                     f"'{file}' has colours of 16 bits, of which Pillow keeps 8: convert it to TIFF"
                 )

@@ -259,6 +259,7 @@ def build(
             raise RuntimeError(f"cannot compress: {builder.GetErrorMessage()}{_advice(finder)}")
         if options.progress is not None:
             options.progress(builder.GetNumberOfSlices() / dimensions[2])
+        del slab, samples, hidden  # before the next are read
     image = vtkImageData()
     if not builder.Finish(image):
         raise RuntimeError(f"cannot compress: {builder.GetErrorMessage()}{_advice(finder)}")

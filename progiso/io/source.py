@@ -21,8 +21,12 @@ from .errors import reading
 #: Part of a volume: slices of samples along z, y and x, without steps.
 Region: TypeAlias = tuple[slice, slice, slice]
 
-#: Bytes of samples that are read at a time, in whole layers of blocks.
-_SLAB_BYTES = 2**25
+#: Bytes of samples that are read at a time, in whole layers of blocks: few, as libraries hold them
+#: several times while they decompress.
+_SLAB_BYTES = 2**23
+
+#: Bytes above which a layer of chunks is not read at once, but chunks several times.
+_LAYER_BYTES = 2**27
 
 #: World coordinates with known axes, as the signs that turn them into those of "RAS" (towards a
 #: patient's right, anterior and superior).
@@ -322,6 +326,7 @@ class Source(ABC):
             if hidden is not None and self.about.components > 1:
                 hidden = np.broadcast_to(hidden[..., np.newaxis], samples.shape)
             yield samples if hidden is None else np.ma.MaskedArray(samples, hidden)
+            del samples, hidden  # before the next are read
 
     def image(self, progress: Progress | None = None) -> vtkImageData:
         """Read everything as an image whose active point scalars are the samples.
@@ -383,7 +388,7 @@ class Source(ABC):
         if about.chunks is not None:
             layer = int(np.lcm(4, about.chunks[0]))
         slice_bytes = max(1, about.sample_bytes // about.shape[0])
-        if layer * slice_bytes > 4 * _SLAB_BYTES:  # chunks are tall: read some of them twice
+        if layer * slice_bytes > _LAYER_BYTES:  # chunks are tall: read some of them twice
             layer = 4
         return max(layer, _SLAB_BYTES // slice_bytes // layer * layer)
 

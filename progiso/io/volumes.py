@@ -182,6 +182,8 @@ def _slabs(source: Source) -> Iterator[Array | vtkDataArray]:
         else:
             flat = np.ascontiguousarray(slab).reshape(-1, components)
             yield numpy_to_vtk(flat if components > 1 else flat[:, 0], array_type=source.vtk_type)
+            del flat
+        del slab  # before the next is read
 
 
 def _half(progress: Progress | None, number: int) -> Progress | None:

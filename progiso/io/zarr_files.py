@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -318,8 +318,12 @@ def _open_image(
 
 
 def _axes(scale: Mapping[str, Any], ndim: int) -> list[Any]:
-    """Return an image's axes; before version 0.3 they were always the same five."""
-    axes = scale.get("axes") or list("tczyx")[-ndim:]
+    """Return an image's axes; before version 0.3 they were always the same five.
+
+    Version 0.6 has them in systems of coordinates, of which the first is that of the levels.
+    """
+    systems = scale.get("coordinateSystems") or [{}]
+    axes = scale.get("axes") or systems[0].get("axes") or list("tczyx")[-ndim:]
     if len(axes) != ndim:
         raise ValueError(f"its multiscales tell of {len(axes)} axes; the array has {ndim}")
     return list(axes)
@@ -331,21 +335,28 @@ def _transformed(
     """Return the size and start of the steps along all axes: the level's, then the image's."""
     size, start = np.ones(ndim), np.zeros(ndim)
     told = False
-    for owner in (level, scale):
-        for change in owner.get("coordinateTransformations", ()):
-            kind = change.get("type")
-            if kind not in ("scale", "translation", "identity"):
-                raise ValueError(f"its coordinates are transformed by {kind!r}, which is unknown")
-            if kind == "identity":
-                continue
-            values = np.asarray(change.get(kind, ()), np.float64)
-            if values.shape != (ndim,):
-                raise ValueError(f"its {kind} {change.get(kind)} does not fit {ndim} axes")
-            if kind == "scale":
-                size, start, told = size * values, start * values, True
-            else:
-                start = start + values
+    for change in _changes(level, scale):
+        kind = change.get("type")
+        if kind not in ("scale", "translation"):
+            raise ValueError(f"its coordinates are transformed by {kind!r}, which is unknown")
+        values = np.asarray(change.get(kind, ()), np.float64)
+        if values.shape != (ndim,):
+            raise ValueError(f"its {kind} {change.get(kind)} does not fit {ndim} axes")
+        if kind == "scale":
+            size, start, told = size * values, start * values, True
+        else:
+            start = start + values
     return [(float(s) if told else None, float(o)) for s, o in zip(size, start)]
+
+
+def _changes(*owners: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
+    """Yield transformations one after the other, those of sequences, too."""
+    for owner in owners:
+        for change in owner.get("coordinateTransformations", ()):
+            if change.get("type") == "sequence":
+                yield from _changes({"coordinateTransformations": change["transformations"]})
+            elif change.get("type") != "identity":
+                yield change
 
 
 def _channels(group: Any, ome: Mapping[str, Any]) -> list[str]:

@@ -107,6 +107,15 @@ def test_other_sizes_and_types_are_named(tmp_path, suffix):
         opened(folder)
 
 
+@pytest.mark.parametrize("suffix", ["tif", "png", "jpg", "bmp", "jp2"])
+def test_files_that_are_no_pictures_are_named(tmp_path, suffix):
+    path = tmp_path / f"s0.{suffix}"
+    path.write_bytes(b"no picture at all")
+    for place in (tmp_path, path):
+        with pytest.raises(ValueError, match=path.name):
+            opened(place)
+
+
 @pytest.mark.parametrize("suffix", ["tif", "png", "jpg", "bmp"])
 def test_damaged_slices_are_named(tmp_path, suffix):
     options = {"compression": "zlib", "rowsperstrip": 4} if suffix == "tif" else {}

@@ -238,6 +238,13 @@ def test_imaris(tmp_path):
         opened(path, level=2)
 
 
+def test_a_file_that_is_open_already(path):
+    with h5py.File(path, "w") as file:
+        file["a"] = ramp()
+    with h5py.File(path, "r"):
+        check(opened(path), ramp())
+
+
 def test_truncated_and_flipped_files_are_errors(path):
     with h5py.File(path, "w") as file:
         file.create_dataset("a", data=ramp((16, 33, 35)), compression="gzip", fletcher32=True)

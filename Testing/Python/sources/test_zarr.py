@@ -157,6 +157,24 @@ def test_ome_zarr(tmp_path, version):
         opened(path, level=2)
 
 
+def test_systems_of_coordinates(path):
+    """Version 0.6 has axes in systems, and sequences of transformations."""
+    ome(path)
+    group = zarr.open_group(path, mode="a")
+    image = group.attrs["ome"]
+    scales = image["multiscales"][0]
+    scales["coordinateSystems"] = [{"name": "physical", "axes": scales.pop("axes")}]
+    level = scales["datasets"][0]
+    changes = level["coordinateTransformations"]
+    level["coordinateTransformations"] = [{"type": "sequence", "transformations": changes}]
+    group.attrs["ome"] = image
+    check(opened(path), ramp((2, 3, *SHAPE))[0, 0], (0.25, 0.5, 2), origin=(0, 0, 10), units="um")
+    level["coordinateTransformations"] = [{"type": "affine", "affine": []}]
+    group.attrs["ome"] = image
+    with pytest.raises(ValueError, match="'affine'"):
+        opened(path)
+
+
 def test_labels(tmp_path):
     path = tmp_path / "a.ome.zarr"
     ome(path, version="0.4")
