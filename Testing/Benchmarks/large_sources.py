@@ -114,7 +114,7 @@ def write_zarr(path: Path, slices: int, **options: object) -> None:
     """Write chunks of the layers with a wave only."""
     import zarr
 
-    chunks = (LAYER, 256, 256)
+    chunks = (LAYER, 128, 128)
     shape = (slices, SIDE, SIDE)
     _fill(zarr.create_array(path, shape=shape, dtype="f8", chunks=chunks, **options), slices)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -21,6 +22,9 @@ from .._typing import Array
 from .axes import AxesSource, Step, Values, choose, lay_out, place, role_of, unit_of
 from .inside import Coordinates, only_volume, positional, steps_of
 from .source import Description, Selection, Source
+
+#: Bytes that are read at a time.
+_PIECE_BYTES = 2**21
 
 
 def open_zarr(path: Path, selection: Selection) -> Source:
@@ -73,14 +77,40 @@ class ZarrSource(AxesSource):
 
     def _fetch(self, index: tuple[int | slice, ...]) -> Array:
         array = self.handle.array
-        try:
-            return np.asarray(array[index])
-        except Exception as error:
-            chunk = _damaged_chunk(array, index)
-            where = f"chunk {chunk} of " if chunk else ""
-            raise ValueError(
-                f"cannot read {where}'{self._array or '/'}' in '{self._path}': {error}"
-            ) from error
+        starts = [part.start if isinstance(part, slice) else None for part in index]
+        found = np.empty([p.stop - p.start for p in index if isinstance(p, slice)], array.dtype)
+        for piece in _pieces(index, array.chunks, array.dtype.itemsize):
+            target = tuple(
+                slice(part.start - start, part.stop - start)
+                for part, start in zip(piece, starts)
+                if isinstance(part, slice) and start is not None
+            )
+            try:
+                found[target] = array[piece]
+            except Exception as error:
+                chunk = _damaged_chunk(array, piece)
+                where = f"chunk {chunk} of " if chunk else ""
+                raise ValueError(
+                    f"cannot read {where}'{self._array or '/'}' in '{self._path}': {error}"
+                ) from error
+        return found
+
+
+def _pieces(
+    index: tuple[int | slice, ...], chunks: Sequence[int], itemsize: int
+) -> Iterator[tuple[int | slice, ...]]:
+    """Split a region between chunks until pieces are small, as zarr holds each several times."""
+    parts = [(axis, part) for axis, part in enumerate(index) if isinstance(part, slice)]
+    if math.prod(part.stop - part.start for _, part in parts) * itemsize > _PIECE_BYTES:
+        for axis, part in parts:
+            size = chunks[axis]
+            middle = ((part.start + part.stop) // 2 + size - 1) // size * size
+            middle = middle if middle < part.stop else (part.stop - 1) // size * size
+            if middle > part.start:
+                for half in (slice(part.start, middle), slice(middle, part.stop)):
+                    yield from _pieces((*index[:axis], half, *index[axis + 1 :]), chunks, itemsize)
+                return
+    yield index
 
 
 class _Opened:

@@ -9,6 +9,7 @@ from zarr.codecs import BloscCodec
 
 import progiso
 from helpers.sources import SHAPE, check, opened, ramp
+from progiso.io import zarr_files
 
 
 @pytest.fixture
@@ -45,6 +46,14 @@ def test_plain_arrays(path, options, dtype):
         source, expected.astype({"?": "u1", "f2": "f4"}.get(dtype, dtype.lstrip("<>"))), (1, 1, 1)
     )
     assert source.about.chunks == (4, 4, 4)
+
+
+@pytest.mark.parametrize("piece_bytes", [1, 100, 1000])
+def test_regions_in_pieces(path, monkeypatch, piece_bytes):
+    monkeypatch.setattr(zarr_files, "_PIECE_BYTES", piece_bytes)
+    expected = ramp((2, *SHAPE))
+    array_in(path, expected, chunks=(1, 3, 4, 5))
+    check(opened(path, channel=1), expected[1])
 
 
 def test_zip(tmp_path):
