@@ -71,7 +71,7 @@ def open_hdf5(path: Path, selection: Selection) -> Source:
         choose(path, "level", selection.level or 0, 1)
         choose(path, "series", selection.series or 0, 1)
         dataset, signal = _find(path, file, selection)
-        _check_filters(path, dataset)
+        _check_stored(path, dataset)
         meta = _meta(path, dataset, signal)
         values = meta.values or Values(dataset.dtype)
         layout = lay_out(path, meta.axes, dataset.shape, selection, channels=meta.channels)
@@ -183,8 +183,18 @@ def _is_scale(dataset: Any) -> bool:
     return _text(dataset.attrs.get("CLASS")) == "DIMENSION_SCALE"
 
 
-def _check_filters(path: Path, dataset: Any) -> None:
-    """Raise where a filter is missing; HDF5's own message would name a folder of plugins."""
+def _check_stored(path: Path, dataset: Any) -> None:
+    """Raise where other files are missing that hold the samples, or what decompresses them.
+
+    HDF5 would fill in samples of missing files, and name a folder of plugins.
+    """
+    others = (
+        [source.file_name for source in dataset.virtual_sources()] if dataset.is_virtual else []
+    )
+    others += [name for name, _, _ in dataset.external or ()]
+    for name in others:
+        if name != "." and "%" not in name and not (path.parent / name).exists():
+            raise ValueError(f"cannot read '{path}': samples are in '{name}', which is missing")
     properties = dataset.id.get_create_plist()
     for number in range(properties.get_nfilters()):
         code, _, _, name = properties.get_filter(number)
@@ -325,7 +335,7 @@ def _open_imaris(path: Path, file: Any, selection: Selection) -> Source:
     choose(path, "component", selection.component or 0, 1)
     group = channels[number]
     dataset = group["Data"]
-    _check_filters(path, dataset)
+    _check_stored(path, dataset)
     sizes = [int(_chars(group.attrs[f"ImageSize{axis}"])) for axis in "ZYX"]
     if any(size > n for size, n in zip(sizes, dataset.shape)):
         raise ValueError(f"'{path}' tells of {sizes} samples and holds {dataset.shape}")

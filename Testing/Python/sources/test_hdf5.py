@@ -69,6 +69,21 @@ def test_missing_filter_is_named(path, monkeypatch):
         opened(path)
 
 
+def test_virtual_arrays_miss_no_file(path):
+    """HDF5 fills in what is in files that are not there."""
+    layout = h5py.VirtualLayout(SHAPE, "u2")
+    for number in range(SHAPE[0]):
+        with h5py.File(path.parent / f"{number}.h5", "w") as file:
+            file["slice"] = ramp()[number]
+        layout[number] = h5py.VirtualSource(f"{number}.h5", "slice", SHAPE[1:])
+    with h5py.File(path, "w") as file:
+        file.create_virtual_dataset("a", layout)
+    check(opened(path), ramp())
+    (path.parent / "3.h5").unlink()
+    with pytest.raises(ValueError, match="a.h5.*'3.h5', which is missing"):
+        opened(path)
+
+
 def test_spacing_in_attributes(path):
     with h5py.File(path, "w") as file:
         file["a"] = ramp()
