@@ -145,9 +145,12 @@ def source_of(volume: Any, axes: str | None = None) -> Source | None:
             return make(volume)
     if _is_of(volume, "xarray") and hasattr(volume, "dims"):
         return _of_xarray(volume, axes)
-    if all(hasattr(volume, name) for name in ("shape", "dtype", "__getitem__")):
-        return ArraySource(volume, axes or "xyz")
-    return None
+    return ArraySource(volume, axes or "xyz") if is_sliced(volume) else None
+
+
+def is_sliced(volume: Any) -> bool:
+    """Tell whether an object has what arrays have: a shape, a type and slicing."""
+    return all(hasattr(volume, name) for name in ("shape", "dtype", "__getitem__"))
 
 
 def _checked_axes(axes: str | None) -> str | None:

@@ -53,7 +53,8 @@ _KNOWN = {
     *(name for names in _SYNONYMS.values() for name in names),
     *"""ObjectType ObjectSubType ObjectSubTypeName TransformType NDims Name ID ParentID Comment
     Color AcquisitionDate CompressedData CompressedDataSize CompressionLevel BinaryData
-    CenterOfRotation DistanceUnits AnatomicalOrientation DimSize HeaderSize Modality SequenceID ElementMin ElementMax
+    CenterOfRotation DistanceUnits AnatomicalOrientation DimSize HeaderSize Modality
+    SequenceID ElementMin ElementMax
     ElementNumberOfChannels ElementNBits ElementToIntensityFunctionSlope
     ElementToIntensityFunctionOffset ElementType ElementDataFile""".split(),
 }

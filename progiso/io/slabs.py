@@ -18,13 +18,14 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 from .._typing import Array, Dimensions, Progress, Rate
 from .._vtk import vtk_errors
 from .._warnings import warn_user
-from ..geometry import plain_samples
+from ..geometry import plain_samples, set_axes
 from ..options import CompressionOptions, RateChoice, rate_choice
 from ..vtkProgIsoFilters import (
     vtkCompressedVolumeBuilder,
     vtkSampleRateFinder,
     vtkSampleUnitsFinder,
 )
+from .arrays import ArraySource, is_sliced
 
 #: A function of a slice's number that returns the slice, of shape (height, width).
 _SliceAt = Callable[[int], npt.ArrayLike]
@@ -35,11 +36,13 @@ _WORTHWHILE = 2**23
 
 def compress_slabs(
     slabs: Iterable[Array] | _SliceAt,
-    dimensions: Sequence[int],
+    dimensions: Sequence[int] | None = None,
     *,
     rate: Rate = None,
     tolerance: float | None = None,
     name: str = "scalars",
+    spacing: Sequence[float] = (1.0, 1.0, 1.0),
+    origin: Sequence[float] = (0.0, 0.0, 0.0),
     mask_nan: bool = False,
     units: tuple[float, float] | None = None,
     threads: int = 0,
@@ -60,8 +63,9 @@ def compress_slabs(
         Each is used up before the next is asked for, so that its memory may be used again.
         Or ``slice_at(z)``, a function of a slice's number that returns the slice, of one type; it
         is called from several threads at once. Masked samples (`numpy.ma`) are hidden.
-    dimensions : sequence of int
-        Samples along x (width), y (height) and z, each at least 2.
+        Or an array of dask, zarr or h5py, indexed [z, y, x], that is read some slices at a time.
+    dimensions : sequence of int, optional
+        Samples along x (width), y (height) and z, each at least 2. An array tells its own.
     rate : float or "auto", optional
         Bits per sample, in (0, 32], or what `compress` chooses: for that, `slabs` are gone through
         several times where they are labels, or where there is a tolerance. Slabs that come once
@@ -70,6 +74,8 @@ def compress_slabs(
         As in `compress`, for slabs that can be gone through several times.
     name : str, default: "scalars"
         Name of the array.
+    spacing, origin : sequence of 3 float
+        Distance of samples along x, y and z, and the place of the first.
     mask_nan : bool, default: False
         Whether NaN and infinite samples are hidden, as in `compress`.
     units : tuple of 2 float, optional
@@ -85,12 +91,12 @@ def compress_slabs(
     Returns
     -------
     vtkmodules.vtkCommonDataModel.vtkImageData
-        A compressed volume with unit spacing and its origin at zero.
+        A compressed volume.
 
     Raises
     ------
     ValueError
-        When a slab's shape does not fit the dimensions.
+        When a slab's shape does not fit the dimensions, or these are missing.
     TypeError
         When slabs hold no real numbers, or slices are of another type than the first.
     RuntimeError
@@ -107,15 +113,33 @@ def compress_slabs(
     >>> progiso.describe(volume)["samples"]
     [32, 32, 32]
     """
-    width, height, depth = (int(n) for n in dimensions)
-    size = (width, height, depth)
     options = CompressionOptions(
         rate=rate, tolerance=tolerance, mask_nan=mask_nan, threads=threads, progress=progress
     )
-    passes = _passes(slabs, size, threads)
+    size, passes = _sized_passes(slabs, dimensions, threads)
     if callable(passes):
-        return compress_passes(passes, size, name, options, units=units)
-    return build(passes, size, name, options, units=units)
+        volume = compress_passes(passes, size, name, options, units=units)
+    else:
+        volume = build(passes, size, name, options, units=units)
+    set_axes(volume, np.diag(np.asarray(spacing, float)), origin)
+    return volume
+
+
+def _sized_passes(
+    slabs: Iterable[Array] | _SliceAt, dimensions: Sequence[int] | None, threads: int
+) -> tuple[Dimensions, Iterator[Array] | Callable[[], Iterator[Array]]]:
+    """Return the dimensions, and whole layers of blocks or what makes these each time."""
+    if is_sliced(slabs):
+        source = ArraySource(slabs, "zyx")
+        own = source.about.dimensions
+        if dimensions is not None and tuple(dimensions) != own:
+            raise ValueError(f"the array has {own} samples, not {tuple(dimensions)}")
+        return own, source.slabs
+    if dimensions is None:
+        raise ValueError("give dimensions: samples along x, y and z")
+    width, height, depth = (int(n) for n in dimensions)
+    size = (width, height, depth)
+    return size, _passes(slabs, size, threads)
 
 
 def compress_passes(

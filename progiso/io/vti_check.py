@@ -135,7 +135,7 @@ class _Reader:
         return self._bytes(self._counter, self.numbers(1)[0])
 
     def unpacked(self) -> bytes:
-        """Read blocks that zlib has packed: their number, two sizes, a size each, then the blocks."""
+        """Read zlib's blocks: their number, two sizes, a size each, then the blocks."""
         head = (3 + self.numbers(1)[0]) * self._counter
         sizes = self.numbers(head // self._counter)[3:]
         if not self._raw:  # the head and the blocks are encoded apart

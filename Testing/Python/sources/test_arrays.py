@@ -77,6 +77,21 @@ def test_slices_first(library):
         as_image(lazy, "xyw")
 
 
+@pytest.mark.parametrize("library", LAZY)
+def test_as_slabs(library):
+    """Slabs are slices, rows and columns; a lazy array is as many of them as it has."""
+    expected = progiso.compress(values(), axes="zyx", rate=7)
+    volume = progiso.compress_slabs(
+        LAZY[library](), rate=7, name="values", spacing=(1, 2, 3), origin=(4, 5, 6)
+    )
+    check_same(volume, expected)
+    assert volume.GetSpacing() == (1, 2, 3) and volume.GetOrigin() == (4, 5, 6)
+    with pytest.raises(ValueError, match="has .11, 10, 9. samples, not .9, 10, 11."):
+        progiso.compress_slabs(LAZY[library](), SHAPE)
+    with pytest.raises(ValueError, match="give dimensions"):
+        progiso.compress_slabs([values()])
+
+
 def test_regions():
     """A region is that of the whole, also in threads and after a journey to another process."""
     whole = values().T
