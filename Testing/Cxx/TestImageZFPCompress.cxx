@@ -14,6 +14,7 @@
 #include <vtkFieldData.h>
 #include <vtkIntArray.h>
 #include <vtkSOADataArrayTemplate.h>
+#include <vtkSampleRateFinder.h>
 
 #include <limits>
 
@@ -203,6 +204,72 @@ TEST(ImageZFPCompress, TinyValues)
   std::replace(values.begin(), values.end(), 1e-25f, 6e-23f); // above 2^-74: zero does not show
   const auto small = Read(Compress(Image(dims, FloatArray(values))));
   EXPECT_TRUE(small->GetScale() == 1.0) << "small block";
+}
+
+//------------------------------------------------------------------------------
+// A ball of 4000 in 0.
+std::vector<float> Ball(const Dims& dims)
+{
+  std::vector<float> values;
+  for (vtkIdType i = 0; i < Product(dims); ++i)
+  {
+    const double x = i % dims[0] - 0.5 * dims[0], y = i / dims[0] % dims[1] - 0.5 * dims[1];
+    const double z = i / dims[0] / dims[1] - 0.5 * dims[2];
+    values.push_back(x * x + y * y + z * z < 100.0 ? 4000.0f : 0.0f);
+  }
+  return values;
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkCompressedVolume> CompressWith(
+  vtkImageData* image, double rate, bool keepLabels, double tolerance)
+{
+  vtkNew<vtkImageZFPCompress> compress;
+  compress->SetInputData(image);
+  compress->SetRate(rate);
+  compress->SetKeepLabels(keepLabels);
+  compress->SetTolerance(tolerance);
+  compress->Update();
+  return Read(compress->GetOutput());
+}
+
+//------------------------------------------------------------------------------
+// Labels get the rate that they need, from the filter and from the finder for slabs; what is too
+// low for an isovalue is told.
+TEST(ImageZFPCompress, LabelsAndTolerances)
+{
+  const Dims dims = { 26, 25, 27 };
+  const std::vector<float> values = Ball(dims);
+  const auto image = Image(dims, FloatArray(values));
+  vtkNew<vtkDoubleArray> isovalues;
+  isovalues->InsertNextValue(0.5);
+  const auto given = CompressWith(image, 8.0, false, 0.0);
+  EXPECT_EQ(given->GetRate(), 8.0);
+  EXPECT_GT(given->GetLargestError(), 0.5);
+  EXPECT_GT(given->GetMeanError(), 0.0);
+  EXPECT_NE(given->DescribeDoubts(isovalues).find("Isovalue 0.5 may"), std::string::npos);
+  const auto kept = CompressWith(image, 8.0, true, 0.0);
+  EXPECT_GT(kept->GetRate(), 8.0);
+  EXPECT_LT(kept->GetLargestError(), 0.5);
+  EXPECT_EQ(kept->DescribeDoubts(isovalues), "");
+  EXPECT_EQ(CompressWith(FloatImage(dims), 8.0, true, 0.0)->GetRate(), 8.0) << "no labels";
+
+  const auto array = FloatArray(values);
+  vtkNew<vtkSampleRateFinder> finder;
+  finder->Start(dims.data());
+  EXPECT_TRUE(finder->AddForLabels(array));
+  EXPECT_TRUE(finder->FindsLabels());
+  finder->SetRate(8.0);
+  for (double before = 0.0; before != finder->GetRate();)
+  {
+    before = finder->GetRate();
+    finder->Start(dims.data());
+    EXPECT_TRUE(finder->AddSlab(array));
+  }
+  EXPECT_EQ(finder->GetRate(), kept->GetRate());
+  EXPECT_EQ(CompressWith(image, 4.0, false, 0.49)->GetRate(), kept->GetRate());
+  ExpectError("No rate keeps the samples within 1e-30", FloatImage(dims),
+    [](vtkImageZFPCompress* compress) { compress->SetTolerance(1e-30); });
 }
 
 //------------------------------------------------------------------------------

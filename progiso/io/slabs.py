@@ -18,6 +18,7 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 from .._typing import Array, Dimensions, Progress, Rate
 from .._vtk import vtk_errors
 from .._warnings import warn_user
+from ..compression import describe
 from ..geometry import plain_samples, set_axes
 from ..options import CompressionOptions, RateChoice, rate_choice
 from ..vtkProgIsoFilters import (
@@ -261,7 +262,8 @@ def build(
 
     They are arrays of shape (depth, height, width), with `components` more values where there are
     several, whose masked samples are hidden, or VTK's. Where `units` are None nobody looked for
-    them: values that float32 cannot hold are compressed as they are, and a warning says so.
+    them: values that float32 cannot hold are compressed as they are, and a warning says so. Where
+    the rate is None nobody looked for labels, and a warning tells that they have not been kept.
     """
     offset, scale = (0.0, 1.0) if units is None else map(float, units)
     builder = vtkCompressedVolumeBuilder()
@@ -275,12 +277,17 @@ def build(
         raise ValueError("slabs that come once take a rate, not a tolerance")
     _require(builder.Start(dimensions, choice.rate), builder)
     finder = vtkSampleUnitsFinder() if units is None else None
+    labels = vtkSampleRateFinder() if choice.keep_labels else None
+    if labels is not None:
+        labels.Start(dimensions)
     for slab in slabs:
         samples, hidden = _vtk_arrays(slab, options.component, components)
         if finder is not None and samples.GetNumberOfComponents() > options.component >= 0:
             finder.AddSamples(samples, options.component, hidden)
         if not builder.AddSlab(samples, options.component, hidden):
             raise RuntimeError(f"cannot compress: {builder.GetErrorMessage()}{_advice(finder)}")
+        if labels is not None and not labels.AddForLabels(samples, options.component, hidden):
+            labels = None
         if options.progress is not None:
             options.progress(builder.GetNumberOfSlices() / dimensions[2])
         del slab, samples, hidden  # before the next are read
@@ -289,6 +296,12 @@ def build(
         raise RuntimeError(f"cannot compress: {builder.GetErrorMessage()}{_advice(finder)}")
     if _advice(finder):
         warn_user(f"float32 cannot hold the samples{_advice(finder)}")
+    error = describe(image)["largest_error"]
+    if labels is not None and labels.FindsLabels() and error >= 0.5:
+        warn_user(
+            f"the slabs are labels, and off by up to {error:g} at {choice.rate:g} bits per sample: "
+            "give a rate, or slabs that can be gone through twice"
+        )
     return image
 
 

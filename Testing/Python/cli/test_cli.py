@@ -14,6 +14,7 @@ from helpers.images import (
     blobs,
     make_image,
     marschner_lobb,
+    noise,
     reference_values,
     reference_volume,
     same_bits,
@@ -116,6 +117,44 @@ def test_notes(folder):
         folder, "render", "packed.vti", "--isovalue", 0.1, "--size", "64x48", "--rate", 6
     )
     assert quiet.stderr == ""
+
+
+def test_labels_and_tolerances(folder):
+    """What was chosen is said; one warning where what is given does not do."""
+    ball = np.where(np.linalg.norm(np.mgrid[-16:16, -16:16, -16:16], axis=0) < 12, 4000, 0)
+    ball.astype(np.int16).tofile(folder / "ball_32x32x32_int16.raw")
+    done = run_progiso(folder, "compress", "ball_32x32x32_int16.raw", "ball.vti")
+    assert "bits per sample, errors up to 0.4" in done.stdout and "these are labels" in done.stderr
+    about = json.loads(call_progiso(folder, "info", "ball.vti", "--json"))["compressed"]
+    assert 0 < about["mean_error"] < about["largest_error"] < 0.5 and about["rate"] > 8
+    assert run_progiso(folder, "contour", "ball.vti", "a.ply", "--isovalue", 0.5).stderr == ""
+    for command in (("render", "--size", "64x48"), ("contour", "b.ply")):
+        done = run_progiso(
+            folder, command[0], "ball_32x32x32_int16.raw", *command[1:],
+            "--isovalue", 0.5, "--rate", 8,
+        )  # fmt: skip
+        assert done.returncode == 0 and done.stderr.count("Isovalue 0.5 may show another") == 1
+    for rate in ((), ("--rate", "auto")):
+        call_progiso(folder, "compress", "plain.vti", "kept.vti", "--tolerance", 0.01, *rate)
+        assert progiso.describe(progiso.read(folder / "kept.vti"))["largest_error"] <= 0.01
+
+
+def test_negative_numbers_are_values(folder):
+    for number in ("-1e-3", "-.5", "-0.25", "-1E-2"):
+        call_progiso(folder, "contour", "packed.vti", "negative.ply", "--isovalue", number)
+    call_progiso(
+        folder, "render", "packed.vti", "--isovalue", "-1e-3", "--size", "64x48",
+        "--view", "-1,0,0", "--up", "-.1,0,1",
+    )  # fmt: skip
+    assert "--nonsense" in call_progiso(folder, "info", "plain.vti", "--nonsense", succeeds=False)
+
+
+def test_ranges_of_components(folder):
+    """`info` tells the range of each, of plain images in memory and by slabs."""
+    values = np.stack([noise((6, 7, 8), seed) * seed for seed in (1, 2, 3)], -1)
+    progiso.save(make_image(values, "three"), folder / "three.vti")
+    found = json.loads(call_progiso(folder, "info", "three.vti", "--json"))["point arrays"]["three"]
+    assert found["range"] == [[float(v.min()), float(v.max())] for v in np.moveaxis(values, -1, 0)]
 
 
 def render(folder, file, *arguments):

@@ -120,6 +120,13 @@ def test_hidden_samples_are_no_labels():
 
 
 def test_slabs_that_come_once_take_a_number():
+    with pytest.warns(UserWarning, match="the slabs are labels, and off by up to") as caught:
+        progiso.compress_slabs(iter(BALL.T), BALL.shape)
+    assert len(caught) == 1 and caught[0].filename == __file__
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        progiso.compress_slabs(iter(BALL.T), BALL.shape, rate=8)
+        progiso.compress_slabs(iter(OTHERS["smooth"]), BALL.shape)
     with pytest.raises(ValueError, match="take a rate"):
         progiso.compress_slabs(iter(BALL.T), BALL.shape, tolerance=1)
 
