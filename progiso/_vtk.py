@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData
-from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkStreamingDemandDrivenPipeline
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 
-from ._typing import Dimensions, Progress
+from ._typing import Progress
 
 # "ERROR: In file.cxx, line 12\nvtkClass (0x55...): the message\n\n"
 _MESSAGE = re.compile(
@@ -136,18 +136,3 @@ def observe_progress(algorithm: vtkAlgorithm, progress: Progress | None) -> None
     if progress is not None:
         observe: Any = algorithm.AddObserver  # VTK's stubs do not know names of events
         observe("ProgressEvent", lambda source, _: progress(source.GetProgress()))
-
-
-def dimensions_of(reader: vtkAlgorithm) -> Dimensions:
-    """Return the samples along x, y and z of what a reader will read, by its header."""
-    key = vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT()
-    extent = [reader.GetOutputInformation(0).Get(key, i) for i in range(6)]
-    width, height, depth = (b - a + 1 for a, b in zip(extent[::2], extent[1::2]))
-    return width, height, depth
-
-
-def place_as_read(image: vtkImageData, reader: vtkAlgorithm) -> None:
-    """Give an image the spacing and origin of what a reader will read, by its header."""
-    about = reader.GetOutputInformation(0)
-    image.SetSpacing([about.Get(vtkDataObject.SPACING(), i) for i in range(3)])
-    image.SetOrigin([about.Get(vtkDataObject.ORIGIN(), i) for i in range(3)])

@@ -44,7 +44,10 @@ _ZFP = Format("zfp", "open_zfp", "zfp")
 _RAW = Format("raw", "open_raw", "raw samples")
 _METAIMAGE = Format("metaimage", "open_metaimage", "MetaImage")
 _NRRD = Format("nrrd", "open_nrrd", "NRRD")
-_LEGACY = Format("legacy", "open_legacy", "medical images")
+_NIFTI = Format("neuroimages", "open_neuroimage", "NIfTI", "medical")
+_NEURO = Format("neuroimages", "open_neuroimage", "Analyze, MGH, AFNI, PAR/REC, MINC", "medical")
+_GIPL = Format("gipl", "open_gipl", "GIPL")
+_DICOM = Format("dicom", "open_dicom", "DICOM", "medical")
 _TIFF = Format("tiff", "open_tiff", "TIFF", "tiff")
 _HDF5 = Format("hdf5", "open_hdf5", "HDF5", "hdf5", arrays=True)
 _PICTURE = Format("folders", "open_picture", "pictures", "pictures")
@@ -60,8 +63,16 @@ FORMATS: dict[str, Format] = {
     ".mhd": _METAIMAGE,
     ".nrrd": _NRRD,
     ".nhdr": _NRRD,
-    ".nii": _LEGACY,
-    ".nii.gz": _LEGACY,
+    ".nii": _NIFTI,
+    ".nii.gz": _NIFTI,
+    **dict.fromkeys(
+        ".hdr .hdr.gz .img .img.gz .mgh .mgh.gz .mgz .head .brik .brik.gz .par .rec .mnc".split(),
+        _NEURO,
+    ),
+    **dict.fromkeys((".dcm", ".dicom", ".ima"), _DICOM),
+    ".gipl": _GIPL,
+    ".gipl.gz": _GIPL,
+    ".gii": _NEURO,  # surfaces: refused with the reason
     ".zfp": _ZFP,
     ".raw": _RAW,
     ".tif": _TIFF,
@@ -89,7 +100,7 @@ FORMATS: dict[str, Format] = {
 }
 
 #: What reads a file of another suffix.
-OTHER = Format("legacy", "open_other", "other images")
+OTHER = Format("others", "open_other", "other images")
 
 #: What reads a folder that has none of the suffixes above.
 FOLDER = Format("folders", "open_folder", "folders of DICOM files or numbered slices")
@@ -156,7 +167,17 @@ def format_of(path: Path) -> Format:
     suffix = suffix_of(path)
     if suffix in FORMATS:
         return FORMATS[suffix]
-    return FOLDER if path.is_dir() else OTHER
+    if path.is_dir():
+        return FOLDER
+    return _DICOM if _is_dicom(path) else OTHER
+
+
+def _is_dicom(path: Path) -> bool:
+    """Tell whether a file is DICOM, whose names often have no suffix."""
+    if not path.is_file():
+        return False
+    with open(path, "rb") as file:
+        return file.read(132)[128:] == b"DICM"
 
 
 def suffix_of(path: FilePath) -> str:

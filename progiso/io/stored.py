@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 _STEP = 2**18
 
 #: How many times as long as its compressed bytes a stream of zlib or gzip can be, at most.
-_LONGEST_INFLATION = 1100
+LONGEST_INFLATION = 1100
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -313,7 +313,7 @@ def _check_size(what: str, layout: Layout, number: int) -> None:
     size = path.stat().st_size - max(0, layout.offset)
     values = held // layout.dtype.itemsize
     needed = {"raw": held, "text": 2 * values - 1, "hex": 2 * held, "bzip2": 1}.get(
-        layout.encoding, held // _LONGEST_INFLATION
+        layout.encoding, held // LONGEST_INFLATION
     )
     skipped = max(0, layout.skipped_bytes) if layout.encoding == "raw" else 0
     if size < max(1, needed + skipped):
