@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import io
+import json
 import logging
 import os
+import subprocess
+import sys
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Generator, Iterable, Iterator, Sequence
+from contextlib import closing, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,7 +19,7 @@ import numpy as np
 import pydicom
 from pydicom.errors import InvalidDicomError
 from pydicom.pixels import iter_pixels
-from pydicom.uid import MediaStorageDirectoryStorage
+from pydicom.uid import MediaStorageDirectoryStorage, RLELossless
 
 from .._typing import Array
 from .errors import reason_of
@@ -54,6 +59,7 @@ class _Frame:
     slope: float
     intercept: float
     order: tuple[float, ...]
+    apart: bool
 
 
 @dataclass(frozen=True)
@@ -119,32 +125,31 @@ class DicomSource(Source):
         files: dict[Path, list[int]] = {}
         for place, frame in enumerate(wanted):
             files.setdefault(frame.file, []).append(place)
-        for file, places in files.items():
+        for places in files.values():
             places.sort(key=lambda place: wanted[place].index)
-            indices = [wanted[place].index for place in places]
-            for place, pixels in zip(places, self._pixels(file, indices)):
-                part = pixels[rows, columns]
+        jobs = [(file, [wanted[p].index for p in places]) for file, places in files.items()]
+        order = [place for places in files.values() for place in places]
+        with closing(_decoded_apart(jobs) if wanted[0].apart else _decoded(jobs)) as decoded:
+            for place in order:
+                part = self._next(decoded, wanted[place].file)[rows, columns]
                 if self._component is not None:
                     part = part[..., self._component]
                 found[place] = self._scaled(part, wanted[place])
         return found
 
-    def _pixels(self, file: Path, indices: list[int]) -> Iterable[Array]:
-        """Decode frames of a file, in ascending order."""
-        shape = self.shape[1:]
+    def _next(self, decoded: Iterator[Array], file: Path) -> Array:
+        """Return the next frame, which is one of a file."""
         try:
-            count = 0
-            for pixels in iter_pixels(file, indices=indices):
-                if pixels.shape[:2] != shape:
-                    raise ValueError(f"its pixels are {pixels.shape}, not {shape}")
-                count += 1
-                yield pixels
-            if count != len(indices):
+            pixels = next(decoded, None)
+            if pixels is None:
                 raise ValueError("frames are missing")
+            if pixels.shape[:2] != self.shape[1:]:
+                raise ValueError(f"its pixels are {pixels.shape}, not {self.shape[1:]}")
         except Exception as error:
             raise ValueError(
                 f"'{self.about.what}': cannot decode '{file.name}': {reason_of(error)}"
             ) from error
+        return pixels
 
     def _scaled(self, pixels: Array, frame: _Frame) -> Array:
         """Apply a slice's slope and intercept."""
@@ -161,6 +166,37 @@ class DicomSource(Source):
                 "says (BitsStored)"
             )
         return shifted.astype(self.dtype)
+
+
+def _decoded(jobs: list[tuple[Path, list[int]]]) -> Generator[Array, None, None]:
+    """Decode frames of files, in ascending order."""
+    for file, indices in jobs:
+        yield from iter_pixels(file, indices=indices)
+
+
+def _decoded_apart(jobs: list[tuple[Path, list[int]]]) -> Generator[Array, None, None]:
+    """Decode frames in a process of its own: GDCM ends it on some damaged files."""
+    lines = "".join(json.dumps([os.path.abspath(f), i]) + "\n" for f, i in jobs)
+    script = Path(__file__).with_name("dicom_decoder.py").read_text("utf-8")
+    command = [sys.executable, "-c", script]
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+    ) as process:
+        assert process.stdin is not None and process.stdout is not None
+        try:
+            with suppress(BrokenPipeError), process.stdin as stdin:
+                stdin.write(lines.encode())
+            for _ in range(sum(len(indices) for _, indices in jobs)):
+                length = int.from_bytes(process.stdout.read(8), "little")
+                packed = process.stdout.read(length)
+                if not packed or len(packed) < length:
+                    raise ValueError("the decoder (GDCM) failed")
+                found = np.load(io.BytesIO(packed), allow_pickle=False)
+                if found.dtype.kind == "U":
+                    raise ValueError(str(found))
+                yield found
+        finally:
+            process.kill()
 
 
 def open_dicom(path: Path, selection: Selection) -> DicomSource:
@@ -339,7 +375,15 @@ def _frame(file: Path, header: Any, index: int, modality: str) -> _Frame:
         slope=1.0 if slope is None else float(slope),
         intercept=float(intercept or 0),
         order=(*map(_order, times), _order(header.get("InstanceNumber")), float(index)),
+        apart=_needs_gdcm(header),
     )
+
+
+def _needs_gdcm(header: Any) -> bool:
+    """Tell whether pixels are compressed in a way that pydicom itself does not decode."""
+    syntax = header.file_meta.get("TransferSyntaxUID")
+    known = syntax is not None and syntax.is_transfer_syntax
+    return bool(known and syntax.is_encapsulated and syntax != RLELossless)
 
 
 def _numbers(value: Any, count: int) -> tuple[float, ...] | None:

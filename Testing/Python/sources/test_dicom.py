@@ -2,6 +2,7 @@
 
 import pathlib
 import pickle
+import sys
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -374,3 +375,11 @@ def test_examples_of_pydicom(name):
         pytest.skip("this version of pydicom does not come with it")
     found = open_source(path).read()
     assert np.array_equal(found, itk.GetArrayFromImage(itk.ReadImage(str(path))))
+
+
+def test_a_decoder_that_ends_is_told(monkeypatch):
+    """GDCM aborts on some damaged files: it does so in a process of its own."""
+    monkeypatch.setattr(sys, "executable", "/bin/false")
+    path = pydicoms_own("MR_small_jpeg_ls_lossless.dcm")
+    with pytest.raises(ValueError, match=f"{path.name}'.*the decoder"):
+        open_source(path).read()
