@@ -116,6 +116,12 @@ def write_simpleitk(path: Path) -> None:
     SimpleITK.WriteImage(SimpleITK.GetImageFromArray(samples()), str(path))
 
 
+def write_dicom(path: Path) -> None:
+    from pydicom.data import get_testdata_file
+
+    shutil.copy(str(get_testdata_file("MR_small.dcm")), path)
+
+
 #: Writers of seeds by name.
 SEEDS: dict[str, Callable[[Path], None]] = {
     "plain.vti": write_with_progiso,
@@ -128,6 +134,11 @@ SEEDS: dict[str, Callable[[Path], None]] = {
     "packed.mha": write_simpleitk,
     "volume.vtk": write_legacy,
     "volume.nrrd": write_nrrd,
+    "volume.nii": write_nibabel,
+    "volume.nii.gz": write_nibabel,
+    "volume.mgz": write_nibabel,
+    "volume.gipl": write_simpleitk,
+    "volume.dcm": write_dicom,
     "volume.tif": write_tiff,
     "imagej.tif": write_tiff,
     "volume.ome.tif": write_tiff,
