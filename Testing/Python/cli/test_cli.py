@@ -315,7 +315,7 @@ FAILURES = {
         "color: 2 for 1",
     ),
     "a text": (["info", "text.txt"], "text.txt"),
-    "a folder": (["info", "."], "folder"),
+    "a folder": (["info", "empty"], "empty"),
     "a picture's suffix": (
         ["render", "packed.vti", "--isovalue", "0", "--output", "x.jpg"],
         ".png",
@@ -329,6 +329,7 @@ FAILURES = {
 def test_errors_are_one_line(folder, case):
     arguments, word = FAILURES[case]
     (folder / "broken.vti").write_text("<VTKFile")
+    (folder / "empty").mkdir(exist_ok=True)
     (folder / "some.xyz").write_text("?")
     (folder / "text.txt").write_text("What VTK's reader of .hdr pictures takes for its own.\n" * 50)
     lines = call_progiso(folder, *arguments, succeeds=False).strip().splitlines()
