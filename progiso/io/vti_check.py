@@ -7,6 +7,7 @@ and ends the process where a packed block announces more bytes than there is mem
 from __future__ import annotations
 
 import base64
+import math
 import mmap
 import re
 import zlib
@@ -18,6 +19,9 @@ _ATTRIBUTE = re.compile(rb'(\w+)\s*=\s*"([^"]*)"')
 
 #: How many times its size a packed file may hold; zlib and LZ4 reach less, LZMA on constant data.
 _EXPANSION = 10000
+
+#: Points that any file may announce, as one without arrays does, and points along an axis.
+_MODEST, _LONGEST = 2**33, 2**28
 
 _Order: TypeAlias = Literal["little", "big"]
 
@@ -37,10 +41,18 @@ def check_vti(path: Path) -> None:
         raise ValueError(f"'{path}' is empty")
     with open(path, "rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
         end = data.find(b"<AppendedData")
+        end = len(data) if end < 0 else end
         root = _attributes(data, data.find(b"<VTKFile"))
-        for start in _tags(data, len(data) if end < 0 else end):
+        extent = _attributes(data, data.find(b"<ImageData", 0, end)).get(b"WholeExtent", b"")
+        if not _may_be_there(extent, len(data)):
+            raise ValueError(f"'{path}' is damaged: its extent is {extent.decode()}")
+        for start in _tags(data, end):
             about = _attributes(data, start)
             name = about.get(b"Name", b"").decode(errors="replace")
+            if _told(about) > max(_EXPANSION * len(data), _MODEST):
+                raise ValueError(
+                    f"'{path}' is damaged: its array '{name}' announces more than it can hold"
+                )
             if data[start : start + 7] == b"<Array ":
                 found, told = _count(data, start, about, root), _told(about)
                 if told != found:
@@ -61,6 +73,14 @@ def _tags(data: mmap.mmap, end: int) -> Iterator[int]:
         while start >= 0:
             yield start
             start = data.find(tag, start + 1, end)
+
+
+def _may_be_there(extent: bytes, file_bytes: int) -> bool:
+    """Tell whether a file may hold so many points as its extent announces."""
+    ends = [int(end) for end in extent.split()]
+    counts = [stop - start + 1 for start, stop in zip(ends[::2], ends[1::2])]
+    limit = max(_EXPANSION * file_bytes, _MODEST)
+    return max(counts, default=0) <= _LONGEST and math.prod(counts) <= limit
 
 
 def _may_unpack(read: _Reader, file_bytes: int) -> bool:

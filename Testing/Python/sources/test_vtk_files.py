@@ -69,6 +69,24 @@ def test_packed_data_that_announce_too_much(tmp_path):
             open_source(path)
 
 
+@pytest.mark.parametrize(
+    "told, hostile",
+    [
+        (b'WholeExtent="0 6 0 5 0 4"', b'WholeExtent="0 6 0 5 0 2147483647"'),
+        (b'WholeExtent="0 6 0 5 0 4"', b'WholeExtent="0 99999 0 99999 0 99999"'),
+        (b'ScalarType" NumberOfTuples="1"', b'x" NumberOfTuples="99999999999"'),
+    ],
+)
+def test_headers_that_announce_too_much(told, hostile, tmp_path):
+    path = tmp_path / "volume.vti"
+    write(progiso.compress(make_image(blobs((5, 6, 7))), rate=8), path, "Appended")
+    data = path.read_bytes()
+    assert told in data
+    path.write_bytes(data.replace(told, hostile))
+    with pytest.raises(ValueError, match="its extent is|announces more than it can hold"):
+        open_source(path)
+
+
 def test_by_extent(tmp_path):
     """A region is that of the whole, and the volume that of the whole image."""
     values = blobs((13, 7, 9)) * 100
