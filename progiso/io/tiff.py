@@ -233,6 +233,7 @@ class _Pages:
 def _opened(path: Path) -> Iterator[Any]:
     """Open a file to look at its header."""
     with _logged(path), tifffile.TiffFile(path) as file:
+        len(file.pages)  # finds a circle of pages, in which tifffile would go around for ever
         yield file
 
 

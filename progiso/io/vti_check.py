@@ -80,7 +80,8 @@ def _may_be_there(extent: bytes, file_bytes: int) -> bool:
     ends = [int(end) for end in extent.split()]
     counts = [stop - start + 1 for start, stop in zip(ends[::2], ends[1::2])]
     limit = max(_EXPANSION * file_bytes, _MODEST)
-    return max(counts, default=0) <= _LONGEST and math.prod(counts) <= limit
+    longest, least = max(counts, default=0), min(counts, default=0)
+    return least >= 0 and longest <= _LONGEST and math.prod(counts) <= limit
 
 
 def _may_unpack(read: _Reader, file_bytes: int) -> bool:
@@ -88,7 +89,12 @@ def _may_unpack(read: _Reader, file_bytes: int) -> bool:
     blocks, size, last = read.numbers(3)
     if blocks == 0:
         return True
-    if blocks > file_bytes or max(size, last) > 2**31 or blocks * size > _EXPANSION * file_bytes:
+    if (
+        size == 0
+        or blocks > file_bytes
+        or max(size, last) > 2**31
+        or blocks * size > _EXPANSION * file_bytes
+    ):
         return False
     return sum(read.numbers(3 + blocks)[3:]) <= file_bytes
 

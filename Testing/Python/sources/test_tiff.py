@@ -6,6 +6,7 @@ import tifffile
 
 import progiso
 from helpers.sources import SHAPE, check, opened, ramp
+from progiso.io import open_source
 
 
 def written(tmp_path, samples, name="a.tif", **options):
@@ -245,3 +246,19 @@ def test_compressed_by_slabs_as_whole(tmp_path):
     path = written(tmp_path, ramp((9, 33, 35)).astype("f4"), compression="zlib")
     with pytest.warns(UserWarning, match="spacing"):
         assert progiso.is_compressed(progiso.compress_file(path, rate=8))
+
+
+def test_pages_in_a_circle(tmp_path):
+    """The last page names itself as the next one: tifffile would go around for ever."""
+    path = tmp_path / "circle.tif"
+    with tifffile.TiffWriter(path) as writer:
+        for height in (5, 6):
+            writer.write(np.zeros((height, 6), "u1"), metadata=None)
+    with tifffile.TiffFile(path) as file:
+        last, tags = file.pages[1].offset, len(file.pages[1].tags)
+    data = bytearray(path.read_bytes())
+    assert not any(data[last + 2 + 12 * tags : last + 6 + 12 * tags])
+    data[last + 2 + 12 * tags : last + 6 + 12 * tags] = last.to_bytes(4, "little")
+    path.write_bytes(data)
+    with pytest.raises(ValueError, match="circular reference"):
+        open_source(path)

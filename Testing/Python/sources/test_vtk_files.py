@@ -69,10 +69,20 @@ def test_packed_data_that_announce_too_much(tmp_path):
             open_source(path)
 
 
+def test_packed_data_of_another_kind_of_numbers(tmp_path):
+    """Half a number is a block of no size, by which VTK would divide."""
+    path = tmp_path / "volume.vti"
+    write(make_image(blobs((5, 6, 7))), path, "Appended", 0, "ZLib")
+    path.write_bytes(path.read_bytes().replace(b'header_type="UInt64"', b""))
+    with pytest.raises(ValueError, match="announces more than it can hold"):
+        open_source(path)
+
+
 @pytest.mark.parametrize(
     "told, hostile",
     [
         (b'WholeExtent="0 6 0 5 0 4"', b'WholeExtent="0 6 0 5 0 2147483647"'),
+        (b'WholeExtent="0 6 0 5 0 4"', b'WholeExtent="255 6 0 5 0 4"'),
         (b'WholeExtent="0 6 0 5 0 4"', b'WholeExtent="0 99999 0 99999 0 99999"'),
         (b'ScalarType" NumberOfTuples="1"', b'x" NumberOfTuples="99999999999"'),
     ],
