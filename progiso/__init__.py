@@ -52,9 +52,9 @@ from ._opengl import choose_window  # noqa: E402
 choose_window()
 
 from .camera import Camera, orbit_camera, view_camera  # noqa: E402
-from .compression import compress, decompress, describe, is_compressed  # noqa: E402
+from .compression import decompress, describe, is_compressed  # noqa: E402
 from .geometry import image_from_array  # noqa: E402
-from .io import compress_file, compress_slabs, read, save  # noqa: E402
+from .io import compress, compress_file, compress_slabs, read, save  # noqa: E402
 from .isosurface import make_isosurface  # noqa: E402
 from .mesh import contour, save_surface  # noqa: E402
 from .rates import least_rate  # noqa: E402

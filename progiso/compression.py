@@ -10,110 +10,17 @@ from vtkmodules.vtkCommonCore import reference, vtkDataArray
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData
 
 from ._numbers import finite_list
-from ._typing import ImageLike, Isovalues, Progress, Rate
+from ._typing import Isovalues, Progress
 from ._vtk import image_data, observe_progress, vtk_errors
-from .geometry import GHOSTS, as_image, hide_points, plain_samples
+from .geometry import GHOSTS, hide_points, plain_samples
 from .options import CompressionOptions, rate_choice
 from .vtkProgIsoFilters import vtkCompressedVolume, vtkImageZFPCompress, vtkImageZFPDecompress
 
 _POINTS, _CELLS = 0, 1  # vtkDataObject::FieldAssociations
 
 
-def compress(
-    image: ImageLike,
-    *,
-    rate: Rate = None,
-    tolerance: float | None = None,
-    array: str | None = None,
-    component: int = 0,
-    axes: str | None = None,
-    mask_nan: bool = False,
-    threads: int = 0,
-    progress: Progress | None = None,
-) -> vtkImageData:
-    """Compress one array of an image with fixed-rate ZFP.
-
-    Points and cells that a ghost array of the image hides (``vtkGhostType``) stay hidden: an
-    isosurface has a hole there.
-
-    Parameters
-    ----------
-    image : vtkmodules.vtkCommonDataModel.vtkImageData, numpy.ndarray, or like one
-        At least 2 samples along every axis. An array is indexed [x, y, z], as pyvista's ``wrap``
-        takes it, and has unit spacing. Arrays of dask, zarr and h5py are read some slices at a
-        time; an ``xarray.DataArray`` lies where its coordinates say, an image of SimpleITK or
-        nibabel where it says itself.
-    rate : float or "auto", optional
-        Bits per sample, in (0, 32]; zfp rounds it to whole bits per block of 64 samples, at
-        least 9 of them. By default 8, and more for labels and masks (whole numbers, few of them in
-        one place, and few in all or far apart): the least rate that leaves every sample on its side
-        of every half-integer. "auto" takes the least rate that keeps the tolerance.
-    tolerance : float, optional
-        Largest error of a sample, above 0, in the units of the image's values. It takes the place
-        of a rate.
-    array : str, optional
-        Point or cell array to compress; by default the active point scalars, else the first
-        point array, else the active cell scalars, else the first cell array.
-    component : int, default: 0
-        Component of that array.
-    axes : str, optional
-        Order of an array's dimensions: "zyx" where slices come first; by default "xyz", or what
-        the names of an xarray's dimensions say.
-    mask_nan : bool, default: False
-        Whether NaN and infinite samples are hidden, too; otherwise they are an error.
-    threads : int, default: 0
-        Threads that encode; 0 for one per core.
-    progress : callable, optional
-        Called with the fraction done, from 0 to 1.
-
-    Returns
-    -------
-    vtkmodules.vtkCommonDataModel.vtkImageData
-        A compressed volume: the same geometry and no scalars, the stream in the field data.
-        Any VTI writer stores it. Where float32 cannot hold the values (small differences on a large
-        value, 1e300, denormals) the stream has custom units, see `describe`.
-
-    Raises
-    ------
-    TypeError
-        When `image` is neither an image nor a three-dimensional array.
-    ValueError
-        When there is no such array, the rate is out of range, or no rate keeps the tolerance.
-    RuntimeError
-        When there is no such component, the image is flat or compressed already, or a sample is
-        NaN or infinite.
-
-    Examples
-    --------
-    >>> import numpy as np, progiso
-    >>> volume = progiso.compress(np.random.default_rng(1).random((8, 8, 8)), rate=4)
-    >>> progiso.is_compressed(volume)
-    True
-    """
-    options = CompressionOptions(
-        rate=rate,
-        tolerance=tolerance,
-        array=array,
-        component=component,
-        axes=axes,
-        mask_nan=mask_nan,
-        threads=threads,
-        progress=progress,
-    )
-    return compress_with(image, options)
-
-
-def compress_with(image: ImageLike, options: CompressionOptions) -> vtkImageData:
-    """Compress an image; options, result and errors as in `compress`."""
-    if not isinstance(image, (vtkImageData, np.ndarray)):
-        from .io.arrays import source_of  # which needs this module
-        from .io.volumes import compress_source
-
-        source = source_of(image, options.axes)
-        if source is not None:
-            source.tell_notes(3)
-            return compress_source(source, options)
-    image = as_image(image, options.axes)
+def compress_image(image: vtkImageData, options: CompressionOptions) -> vtkImageData:
+    """Compress an image in memory; options, result and errors as in `progiso.compress`."""
     if is_compressed(image):
         raise RuntimeError("cannot compress: the image is a compressed volume already")
     if options.array is not None:
@@ -299,21 +206,6 @@ def decompress(
     with vtk_errors("cannot decompress"):
         decompressor.Update()
     return decompressor.GetOutput()
-
-
-def as_compressed(image: ImageLike, options: CompressionOptions) -> vtkImageData:
-    """Compress an image unless it is a compressed volume already; options as in `compress`.
-
-    Raises
-    ------
-    ValueError
-        When the image is a compressed volume of another array than the one asked for.
-    """
-    if not is_compressed(image):
-        return compress_with(image, options)
-    image = as_image(image)
-    check_array(image, options.array)
-    return image
 
 
 def check_array(volume: vtkImageData, array: Any) -> None:

@@ -9,8 +9,7 @@ import numpy.typing as npt
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkImageData
 
-from ._typing import Array, ImageLike
-from ._vtk import image_data
+from ._typing import Array
 
 #: Name of the array that hides points or cells.
 GHOSTS = "vtkGhostType"  # vtkDataSetAttributes::GhostArrayName()
@@ -81,50 +80,36 @@ def samples_of(image: vtkImageData) -> Array:
     return vtk_to_numpy(points or image.GetCellData().GetScalars()).reshape(size[::-1])
 
 
-def as_image(volume: ImageLike, axes: str | None = None) -> vtkImageData:
-    """Make an image of an array; an image is returned as it is.
+def image_of_samples(samples: Array) -> vtkImageData:
+    """Make an image of a NumPy array.
 
     Parameters
     ----------
-    volume : vtkmodules.vtkCommonDataModel.vtkImageData, numpy.ndarray, or like one
-        An image, or the samples of one: a three-dimensional array that is indexed [x, y, z], as
-        pyvista's ``wrap`` takes it. The masked samples of a `numpy.ma.MaskedArray` become hidden
-        points. Or what `progiso.io.source_of` takes: arrays of dask, zarr, h5py and xarray, images
-        of SimpleITK and nibabel.
-    axes : str, optional
-        Order of an array's dimensions, "zyx" where slices come first.
+    samples : numpy.ndarray
+        Three-dimensional, indexed [x, y, z], as pyvista's ``wrap`` takes it. The masked samples of
+        a `numpy.ma.MaskedArray` become hidden points.
 
     Returns
     -------
     vtkmodules.vtkCommonDataModel.vtkImageData
-        The image itself; or one with unit spacing and its origin at zero, whose array is called
-        "values". Samples in Fortran's order, as those of ``array.T``, are not copied.
+        With unit spacing and its origin at zero; its array is called "values". Samples in Fortran's
+        order, as those of ``array.T``, are not copied.
 
     Raises
     ------
     TypeError
-        When it is neither, or the array has other dimensions or holds no real numbers.
-    ValueError
-        When `axes` is no order of x, y and z.
+        When the array has other dimensions or holds no real numbers.
 
     Examples
     --------
     >>> import numpy as np
-    >>> as_image(np.zeros((4, 3, 2))).GetDimensions()
+    >>> image_of_samples(np.zeros((4, 3, 2))).GetDimensions()
     (4, 3, 2)
     """
-    if not isinstance(volume, np.ndarray) or axes not in (None, "xyz"):
-        from .io.arrays import source_of  # which needs this module
-
-        source = None if isinstance(volume, vtkImageData) else source_of(volume, axes)
-        if source is None:
-            return image_data(volume)
-        source.tell_notes()
-        return source.image()
-    if volume.ndim != 3:
-        raise TypeError(f"an array must have 3 dimensions, this one has {volume.ndim}")
-    values, hidden = plain_samples(volume)
-    image = image_from_array(values.ravel(order="F"), volume.shape, name="values")
+    if samples.ndim != 3:
+        raise TypeError(f"an array must have 3 dimensions, this one has {samples.ndim}")
+    values, hidden = plain_samples(samples)
+    image = image_from_array(values.ravel(order="F"), samples.shape, name="values")
     if hidden is not None:
         hide_points(image, hidden.ravel(order="F"))
     return image

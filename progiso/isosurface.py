@@ -13,7 +13,7 @@ from ._vtk import messages_of
 from ._warnings import warn_user
 from .appearance import MAX_ISOVALUES, as_list, check_count, is_color, set_colors, set_opacities
 from .compression import doubts, is_compressed
-from .geometry import as_image
+from .io.arrays import as_image
 from .options import RenderOptions, SurfaceStyle
 from .vtkProgIsoKernels import vtkIsosurfaceVolume, vtkProgressiveIsosurfaceMapper
 

@@ -20,8 +20,10 @@ from ._numbers import finite_list
 from ._typing import FilePath, ImageLike, Isovalues, Progress, Rate
 from ._vtk import observe_progress, vtk_errors
 from ._warnings import warn_user
-from .compression import as_compressed, check_array, doubts, find_array, is_compressed
-from .geometry import GHOSTS, as_image, cell_centres
+from .compression import check_array, doubts, find_array, is_compressed
+from .geometry import GHOSTS, cell_centres
+from .io.arrays import as_image
+from .io.compressing import as_compressed
 from .io.files import DISK_FULL, atomic_path, check_bytes, check_output
 from .io.vtk_files import write_with
 from .options import CompressionOptions

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ._typing import ImageLike, Progress
-from .compression import compress_with, describe
+from .compression import describe
+from .io.compressing import compress_with
 from .options import CompressionOptions, checked_tolerance
 
 #: Bits per sample at the lowest rate.

@@ -21,7 +21,7 @@ from ._typing import RGB, FilePath, ImageLike, Isovalues
 from ._vtk import vtk_errors
 from .appearance import as_list, is_color
 from .camera import Camera, orbit_camera, view_camera
-from .compression import as_compressed
+from .io.compressing import as_compressed
 from .io.files import atomic_path
 from .isosurface import style_isosurface
 from .options import CompressionKeywords, CompressionOptions, RenderOptions, SurfaceStyle

@@ -20,8 +20,8 @@ from typing import Any
 
 import numpy as np
 
-from ..compression import compress
 from ..geometry import samples_of
+from ..io import compress
 from ..measure.agreement import depth_error
 from ..measure.isosurface import Isosurface
 from ..measure.machine import available_bytes

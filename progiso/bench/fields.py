@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
-from ..compression import compress, decompress
+from ..compression import decompress
 from ..data import GENERATORS, SCANS, cache_folder, fetch
 from ..data import compressed as fetch_compressed
 from ..data.generators import checked_dimensions
-from ..io import read, save
+from ..io import compress, read, save
 
 _NAME = re.compile(
     r"(?P<volume>[a-z]+(?:-[a-z]+)*)(?:-(?P<size>\d+(?:x\d+x\d+)?))?"

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
-from ..compression import compress, decompress
+from ..compression import decompress
 from ..geometry import samples_of
+from ..io import compress
 from ..measure.agreement import depth_error
 from ..measure.isosurface import Isosurface
 from ..measure.topology import topology

@@ -16,12 +16,12 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 import progiso
 
 from .._typing import Progress
-from ..compression import as_compressed
 from ..data import GENERATORS, SCANS, compressed, fetch
 from ..data.catalogue import Scan
 from ..io import Selection, Source, open_source
+from ..io.compressing import as_compressed, compress_source
 from ..io.files import atomic_path, check_output, check_outputs
-from ..io.volumes import COMPRESSED_SUFFIXES, PLAIN_SUFFIXES, compress_source
+from ..io.volumes import COMPRESSED_SUFFIXES, PLAIN_SUFFIXES
 from ..mesh import SURFACE_SUFFIXES
 from ..options import DEFAULT_RATE, CompressionOptions, RenderOptions, SurfaceStyle
 from .info import describe_source, file_bytes, verify_source

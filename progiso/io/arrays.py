@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from vtkmodules.vtkCommonDataModel import vtkImageData
 
-from .._typing import Array, Dimensions
-from ..geometry import plain_samples
+from .._typing import Array, Dimensions, ImageLike
+from .._vtk import image_data
+from ..geometry import image_of_samples, plain_samples
 from .source import Description, Geometry, Region, Selection, Source
 
 #: Names of an xarray's dimensions by the axis that they mean; what is left is z.
@@ -111,6 +113,49 @@ def open_npy(path: Path, selection: Selection) -> Source:
             "dimensions and real numbers"
         )
     return ArraySource(array, _checked_axes(selection.axes) or "xyz", what=str(path))
+
+
+def as_image(volume: ImageLike, axes: str | None = None) -> vtkImageData:
+    """Make an image of an array; an image is returned as it is.
+
+    Parameters
+    ----------
+    volume : vtkmodules.vtkCommonDataModel.vtkImageData, numpy.ndarray, or like one
+        An image, or the samples of one: a three-dimensional array that is indexed [x, y, z], as
+        pyvista's ``wrap`` takes it. The masked samples of a `numpy.ma.MaskedArray` become hidden
+        points. Or what `progiso.io.source_of` takes: arrays of dask, zarr, h5py and xarray, images
+        of SimpleITK and nibabel.
+    axes : str, optional
+        Order of an array's dimensions, "zyx" where slices come first.
+
+    Returns
+    -------
+    vtkmodules.vtkCommonDataModel.vtkImageData
+        The image itself; or one with unit spacing and its origin at zero, whose array is called
+        "values". Samples in Fortran's order, as those of ``array.T``, are not copied.
+
+    Raises
+    ------
+    TypeError
+        When it is neither, or the array has other dimensions or holds no real numbers.
+    ValueError
+        When `axes` is no order of x, y and z.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> as_image(np.zeros((4, 3, 2))).GetDimensions()
+    (4, 3, 2)
+    """
+    if isinstance(volume, vtkImageData):
+        return volume
+    if isinstance(volume, np.ndarray) and axes in (None, "xyz"):
+        return image_of_samples(volume)
+    source = source_of(volume, axes)
+    if source is None:
+        return image_data(volume)
+    source.tell_notes()
+    return source.image()
 
 
 def source_of(volume: Any, axes: str | None = None) -> Source | None:

@@ -1,27 +1,21 @@
-"""Read, save and compress volumes in files of every kind, chosen by suffix."""
+"""Read and save volumes in files of every kind, chosen by suffix."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonCore import vtkDataArray
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
-from .._typing import Array, FilePath, ImageLike, Progress
-from ..compression import compress_with, is_compressed
-from ..geometry import as_image
-from ..options import CompressionKeywords, CompressionOptions, rate_choice
+from .._typing import FilePath, ImageLike, Progress
+from ..compression import is_compressed
+from .arrays import as_image
 from .files import atomic_path, check_output
 from .formats import open_source, suffix_of
 from .metaimage import write_metaimage
 from .nifti import write_nifti
 from .raw import write_raw
-from .slabs import compress_passes
-from .source import Selection, Source
+from .source import Selection
 from .vtk_files import write_vti
 from .zfp import write_zfp
 
@@ -99,96 +93,6 @@ def read(
     with open_source(path, chosen) as source:
         source.tell_notes()
         return source.image(progress)
-
-
-def compress_file(
-    path: FilePath,
-    *,
-    selection: Selection | None = None,
-    **options: Unpack[CompressionKeywords],
-) -> vtkImageData:
-    """Compress a volume in a file, some slices at a time where the format allows it.
-
-    The result is bit for bit that of `compress` on what `read` returns. Memory holds the result and
-    some tens of MiB, or 4 slices, or a layer of the file's chunks where these are larger; the page
-    on formats (``docs/formats.md``) tells which formats are read as a whole.
-
-    Parameters
-    ----------
-    path : str or os.PathLike
-        Of any kind that `read` knows.
-    selection : progiso.io.Selection, optional
-        What of the file is wanted, where it holds more than one volume.
-    **options
-        ``rate``, ``array``, ``component``, ``mask_nan``, ``threads`` and ``progress`` as in
-        `compress`.
-
-    Returns
-    -------
-    vtkmodules.vtkCommonDataModel.vtkImageData
-        A compressed volume.
-
-    Raises
-    ------
-    FileNotFoundError
-        When there is no such file.
-    ValueError
-        When the file is damaged or no image, there is no such array, or the rate is out of range.
-    RuntimeError
-        When the image cannot be compressed, see `compress`.
-
-    Examples
-    --------
-    >>> import progiso
-    >>> from progiso.data import fetch
-    >>> volume = progiso.compress_file(fetch("sphere", size=32), rate=4)
-    >>> progiso.describe(volume)["samples"]
-    [32, 32, 32]
-    """
-    chosen = CompressionOptions(**options)
-    selection = selection or Selection()
-    if chosen.array is not None:
-        selection = replace(selection, array=chosen.array)
-    with open_source(path, selection) as source:
-        source.tell_notes()
-        return compress_source(source, chosen)
-
-
-def compress_source(source: Source, options: CompressionOptions) -> vtkImageData:
-    """Compress a source, some slices at a time unless it holds more than samples.
-
-    The samples are read twice where float32 may not hold them, the first time to choose units, and
-    several times where they are labels, or are to be within a tolerance. The array has been chosen
-    when the source was opened.
-    """
-    rate_choice(options.rate, options.tolerance)
-    if source.more_than_samples:
-        image = source.image(_half(options.progress, 0))
-        return compress_with(image, replace(options, progress=_half(options.progress, 1)))
-    about, count = source.about, source.about.components
-    volume = compress_passes(
-        lambda: _slabs(source), about.dimensions, about.name, options, components=count
-    )
-    source.place(volume)
-    return volume
-
-
-def _slabs(source: Source) -> Iterator[Array | vtkDataArray]:
-    """Yield a source's slabs, as VTK arrays where NumPy's type does not tell VTK's."""
-    components = source.about.components
-    for slab in source.slabs():
-        if source.vtk_type is None:
-            yield slab
-        else:
-            flat = np.ascontiguousarray(slab).reshape(-1, components)
-            yield numpy_to_vtk(flat if components > 1 else flat[:, 0], array_type=source.vtk_type)
-            del flat
-        del slab  # before the next is read
-
-
-def _half(progress: Progress | None, number: int) -> Progress | None:
-    """Return the progress of the first (0) or the second half (1) of the work."""
-    return None if progress is None else lambda fraction: progress((number + fraction) / 2)
 
 
 def save(

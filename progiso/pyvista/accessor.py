@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import pyvista
 
 from .._typing import Isovalues, Progress
-from ..compression import compress, decompress, describe, is_compressed
+from ..compression import decompress, describe, is_compressed
+from ..io import compress
 from ..mesh import contour
 from ..options import EncodingKeywords
 

@@ -15,7 +15,8 @@ from vtkmodules.vtkRenderingCore import vtkColorTransferFunction
 from .._numbers import finite_list, is_number
 from .._typing import RGB, ImageLike, Isovalues, Vector
 from ..appearance import as_list, is_color
-from ..compression import as_compressed, describe
+from ..compression import describe
+from ..io.compressing import as_compressed
 from ..isosurface import style_isosurface
 from ..options import (
     CompressionOptions,

@@ -11,8 +11,9 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 
 from ..camera import Camera, orbit_camera
-from ..compression import compress, decompress
+from ..compression import decompress
 from ..geometry import samples_of
+from ..io import compress
 from ..measure import tolerances
 from ..measure.agreement import Agreement, compare
 from ..measure.isosurface import Isosurface

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compression import compress
+from ..io import compress
 from ..isosurface import make_isosurface
 from ..measure import tolerances
 from ..oracle import caster

@@ -9,9 +9,8 @@ from vtkmodules.vtkCommonDataModel import vtkRectilinearGrid
 
 import progiso
 from helpers.images import check_same, samples_of
-from progiso.geometry import as_image
 from progiso.io import open_source, source
-from progiso.io.arrays import even_steps, source_of
+from progiso.io.arrays import as_image, even_steps, source_of
 
 SHAPE = (9, 10, 11)
 
