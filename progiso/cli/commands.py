@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from contextlib import AbstractContextManager
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -52,15 +53,26 @@ def _read(parsed: argparse.Namespace, name: str = "file") -> vtkImageData:
 
 def _read_compressed(parsed: argparse.Namespace, name: str = "file") -> vtkImageData:
     """Read the input, and compress it unless it is compressed."""
-    with _open(parsed, name) as source:
+    given = _given(parsed, CompressionOptions)
+    with _open(parsed, name) as source, _naming(source.about.what):
         if source.more_than_samples:
             with _reading(parsed, name) as progress:
                 image = source.image(progress)
             _remark_on_compressed(image, parsed)
-            return as_compressed(image, CompressionOptions(**_given(parsed, CompressionOptions)))
-        with progress_bar(f"Compressing {Path(getattr(parsed, name)).name}") as progress:
-            options = CompressionOptions(progress=progress, **_given(parsed, CompressionOptions))
-            return compress_source(source, options)
+            return as_compressed(image, CompressionOptions(**given))
+        with progress_bar(f"Compressing {Path(source.about.what).name}") as progress:
+            return compress_source(source, CompressionOptions(progress=progress, **given))
+
+
+@contextmanager
+def _naming(path: str) -> Iterator[None]:
+    """Put a file's name before errors that lack it."""
+    try:
+        yield
+    except RuntimeError as error:
+        if path in str(error):
+            raise
+        raise RuntimeError(f"'{path}': {error}") from None
 
 
 def _reading(parsed: argparse.Namespace, name: str) -> AbstractContextManager[Progress | None]:
@@ -100,6 +112,7 @@ def compress(parsed: argparse.Namespace) -> None:
     check_output(parsed.out, suffixes, inputs=[getattr(parsed, "in")])
     with (
         _open(parsed, "in") as source,
+        _naming(source.about.what),
         progress_bar(f"Compressing {Path(source.about.what).name}") as progress,
     ):
         options = CompressionOptions(progress=progress, **_given(parsed, CompressionOptions))

@@ -316,6 +316,7 @@ FAILURES = {
     ),
     "a text": (["info", "text.txt"], "text.txt"),
     "a folder": (["info", "empty"], "empty"),
+    "a flat image": (["render", "thin.npy", "--isovalue", "0"], "'thin.npy': cannot compress"),
     "a picture's suffix": (
         ["render", "packed.vti", "--isovalue", "0", "--output", "x.jpg"],
         ".png",
@@ -330,6 +331,7 @@ def test_errors_are_one_line(folder, case):
     arguments, word = FAILURES[case]
     (folder / "broken.vti").write_text("<VTKFile")
     (folder / "empty").mkdir(exist_ok=True)
+    np.save(folder / "thin.npy", np.zeros((1, 5, 6)))
     (folder / "some.xyz").write_text("?")
     (folder / "text.txt").write_text("What VTK's reader of .hdr pictures takes for its own.\n" * 50)
     lines = call_progiso(folder, *arguments, succeeds=False).strip().splitlines()
