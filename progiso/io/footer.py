@@ -57,6 +57,9 @@ def check_footer(path: Path) -> bool:
     if found is None:
         if b"</VTKFile>" not in tail:
             raise ValueError(f"'{path}' is truncated: it does not end with </VTKFile>")
+        if b"<!-- ProgIso:" in tail[tail.rindex(b"</VTKFile>") :]:
+            what = "its last line, which has its checksums, cannot be read"
+            raise ValueError(f"'{path}' is damaged: {what}{_ADVICE}")
         return False
     expected, actual = int(found[1]), size - (len(tail) - found.start())
     sums = [int(text, 16) for text in found[2].split()]

@@ -41,6 +41,9 @@ def check_vti(path: Path) -> None:
         raise ValueError(f"'{path}' is empty")
     with open(path, "rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
         end = data.find(b"<AppendedData")
+        start = _start_of_appended(data)
+        if end >= 0 and data[start - 1 : start] != b"_":
+            raise ValueError(f"'{path}' is damaged: its appended data do not begin with '_'")
         end = len(data) if end < 0 else end
         root = _attributes(data, data.find(b"<VTKFile"))
         extent = _attributes(data, data.find(b"<ImageData", 0, end)).get(b"WholeExtent", b"")
@@ -49,7 +52,7 @@ def check_vti(path: Path) -> None:
         for start in _tags(data, end):
             about = _attributes(data, start)
             name = about.get(b"Name", b"").decode(errors="replace")
-            if _told(about) > max(_EXPANSION * len(data), _MODEST):
+            if not 0 <= _told(about) <= max(_EXPANSION * len(data), _MODEST):
                 raise ValueError(
                     f"'{path}' is damaged: its array '{name}' announces more than it can hold"
                 )
@@ -125,15 +128,22 @@ def _count(data: mmap.mmap, start: int, about: dict[bytes, bytes], root: dict[by
     return read.unpacked().count(0)
 
 
+def _start_of_appended(data: mmap.mmap) -> int:
+    """Return where appended data begin: behind the tag, blanks, and an underscore."""
+    place = data.find(b">", data.find(b"<AppendedData")) + 1
+    while data[place : place + 1].isspace():
+        place += 1
+    return place + 1
+
+
 def _reader(
     data: mmap.mmap, start: int, about: dict[bytes, bytes], root: dict[bytes, bytes]
 ) -> _Reader:
     """Make what reads an array's binary data."""
     place, raw = data.find(b">", start) + 1, False
     if about.get(b"format") == b"appended":
-        appended = data.find(b"<AppendedData")
-        place = data.find(b"_", appended) + 1 + int(about.get(b"offset", b"0"))
-        raw = b'encoding="raw"' in data[appended : data.find(b"_", appended)]
+        place = _start_of_appended(data) + int(about.get(b"offset", b"0"))
+        raw = _attributes(data, data.find(b"<AppendedData")).get(b"encoding") == b"raw"
     counter = _COUNTERS.get(root.get(b"header_type", b"UInt32"), 4)
     order: _Order = "big" if root.get(b"byte_order") == b"BigEndian" else "little"
     return _Reader(data, place, raw, counter, order)

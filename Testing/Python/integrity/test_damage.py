@@ -199,3 +199,12 @@ def test_verify_finds_damage_without_checksums(tmp_path, capsys):
     progiso.save(image, tmp_path / "a.vti")
     status, _, error = verified(capsys, tmp_path / "a.vti")
     assert status == 1 and "not finite" in error
+
+
+def test_a_last_line_that_cannot_be_read(tmp_path):
+    """What begins as a line of checksums, and is none, is no file without checksums."""
+    path = tmp_path / "a.vti"
+    progiso.save(make_image(blobs((5, 6, 7))), path)
+    path.write_bytes(path.read_bytes().replace(b"MiB of the ", b"MiB of the -"))
+    with pytest.raises(ValueError, match="its last line, which has its checksums, cannot be read"):
+        progiso.read(path)
