@@ -73,7 +73,7 @@ def test_a_buffer_too_small_for_the_cache_is_no_small_budget(volume):
     scene = Scene(image, 0.5, camera, SIZE, LargestBuffer=2048 * 256 - 1, **CACHED)
     with vtk_messages() as messages:
         scene.window.Render()
-    (message,) = messages
+    (message,) = (m for m in messages if "Isovalue" not in m)  # of noise at 2 bits it may warn
     assert "raise LargestBuffer" in message and "budget" not in message
     assert np.ptp(scene.picture().reshape(-1, 3), axis=0).max() == 0
     scene.mapper.SetLargestBuffer(2048 * 256)
