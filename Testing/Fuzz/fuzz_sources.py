@@ -157,6 +157,8 @@ def damage(data: bytes, rng: random.Random) -> bytes:
     """Change some bytes, mostly of the header."""
     changed = bytearray(data)
     for _ in range(rng.choice((1, 1, 2, 4, 16))):
+        if not changed:
+            break
         end = max(1, min(len(changed), rng.choice((64, 512, 4096, len(changed)))))
         place = rng.randrange(end)
         how = rng.randrange(6)

@@ -57,7 +57,7 @@ def check_footer(path: Path) -> bool:
     if found is None:
         if b"</VTKFile>" not in tail:
             raise ValueError(f"'{path}' is truncated: it does not end with </VTKFile>")
-        if b"<!-- ProgIso:" in tail[tail.rindex(b"</VTKFile>") :]:
+        if b"ProgIso: CRC-32" in tail[tail.rindex(b"</VTKFile>") :]:
             what = "its last line, which has its checksums, cannot be read"
             raise ValueError(f"'{path}' is damaged: {what}{_ADVICE}")
         return False

@@ -52,7 +52,7 @@ def check_vti(path: Path) -> None:
         for start in _tags(data, end):
             about = _attributes(data, start)
             name = about.get(b"Name", b"").decode(errors="replace")
-            if not 0 <= _told(about) <= max(_EXPANSION * len(data), _MODEST):
+            if not 0 <= _told(about) <= _EXPANSION * len(data):
                 raise ValueError(
                     f"'{path}' is damaged: its array '{name}' announces more than it can hold"
                 )

@@ -84,6 +84,7 @@ def test_packed_data_of_another_kind_of_numbers(tmp_path):
         (b'WholeExtent="0 6 0 5 0 4"', b'WholeExtent="0 6 0 5 0 2147483647"'),
         (b'WholeExtent="0 6 0 5 0 4"', b'WholeExtent="255 6 0 5 0 4"'),
         (b'ScalarType" NumberOfTuples="1"', b'x" NumberOfTuples="-2147483648"'),
+        (b'ScalarType" NumberOfTuples="1"', b'x" NumberOfTuples="2147483648"'),
         (b'encoding="raw">\n   _', b'encoding="raw">\n  \xff_'),
         (b'WholeExtent="0 6 0 5 0 4"', b'WholeExtent="0 99999 0 99999 0 99999"'),
         (b'ScalarType" NumberOfTuples="1"', b'x" NumberOfTuples="99999999999"'),
