@@ -8,6 +8,7 @@ from typing import Any
 from vtkmodules.vtkIOImage import vtkImageReader2Factory
 
 from .._vtk import captured_output
+from .formats import FORMATS
 from .images import ImageSource
 from .source import Selection, Source
 from .vtk_files import read_with
@@ -21,8 +22,6 @@ def open_other(path: Path, selection: Selection) -> Source:
     ValueError
         When none of them takes it.
     """
-    from .formats import FORMATS
-
     reader = _picture_reader(path)
     if reader is None:
         raise ValueError(f"do not know how to read '{path}' (known: {', '.join(FORMATS)})")

@@ -63,9 +63,7 @@ def _plain_array(path: Path, reader: Any, wanted: str | None) -> str | None:
     with vtk_errors(f"cannot read '{path}'"):
         reader.SetFileName(str(path))
         reader.UpdateInformation()
-    if reader.GetOutputDataObject(0) is None or not reader.GetOutputDataObject(0).IsA(
-        "vtkImageData"
-    ):
+    if not isinstance(reader.GetOutputDataObject(0), vtkImageData):
         return None
     points, cells = reader.GetPointDataArraySelection(), reader.GetCellDataArraySelection()
     names = {points.GetArrayName(i) for i in range(points.GetNumberOfArrays())}
@@ -86,7 +84,7 @@ class ExtentSource(Source):
             self._frame = self._read_frame()
         width, height, depth = self._frame.GetDimensions()
         first = self._frame.GetExtent()[::2]
-        one = self._read_extent([n for n in first for _ in range(2)])
+        one = self._read_extent(self._open(), [n for n in first for _ in range(2)])
         self.vtk_type = one.GetDataType()
         super().__init__(
             Description(
@@ -110,6 +108,7 @@ class ExtentSource(Source):
         return checked_image(self._path, reader.GetOutputDataObject(0))
 
     def _open(self) -> Any:
+        """Make a reader of the array; to open one parses all of a file whose data are in line."""
         reader = self._make()
         reader.SetFileName(str(self._path))
         reader.UpdateInformation()
@@ -119,8 +118,7 @@ class ExtentSource(Source):
         points.EnableArray(self._array)
         return reader
 
-    def _read_extent(self, extent: Sequence[int]) -> vtkDataArray:
-        reader = self._open()
+    def _read_extent(self, reader: Any, extent: Sequence[int]) -> vtkDataArray:
         with vtk_errors(f"cannot read '{self._path}'"):
             reader.UpdateExtent(extent)
         image = reader.GetOutputDataObject(0)
@@ -136,7 +134,7 @@ class ExtentSource(Source):
             for start, part in zip(starts, reversed(region))
             for end in (part.start, part.stop - 1)
         ]
-        values = vtk_to_numpy(self._read_extent(extent))
+        values = vtk_to_numpy(self._read_extent(self.handle, extent))
         return values.reshape(*(part.stop - part.start for part in region), *values.shape[1:])
 
     def image(self, progress: Progress | None = None) -> vtkImageData:
