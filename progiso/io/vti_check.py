@@ -50,23 +50,25 @@ def check_vti(path: Path) -> None:
         if not _may_be_there(extent, len(data)):
             raise ValueError(f"'{path}' is damaged: its extent is {extent.decode()}")
         for start in _tags(data, end):
-            about = _attributes(data, start)
-            name = about.get(b"Name", b"").decode(errors="replace")
-            if not 0 <= _told(about) <= _EXPANSION * len(data):
-                raise ValueError(
-                    f"'{path}' is damaged: its array '{name}' announces more than it can hold"
-                )
-            if data[start : start + 7] == b"<Array ":
-                found, told = _count(data, start, about, root), _told(about)
-                if told != found:
-                    raise ValueError(
-                        f"'{path}' is damaged: its strings '{name}' are {found}, not {told}"
-                    )
-            elif root.get(b"compressor") and about.get(b"format") != b"ascii":
-                if not _may_unpack(_reader(data, start, about, root), len(data)):
-                    raise ValueError(
-                        f"'{path}' is damaged: its array '{name}' announces more than it can hold"
-                    )
+            wrong = _wrong_with(data, start, _attributes(data, start), root)
+            if wrong:
+                raise ValueError(f"'{path}' is damaged: its {wrong}")
+
+
+def _wrong_with(
+    data: mmap.mmap, start: int, about: dict[bytes, bytes], root: dict[bytes, bytes]
+) -> str | None:
+    """Tell what is wrong with the array whose tag begins at a place, or None."""
+    name, told = about.get(b"Name", b"").decode(errors="replace"), _told(about)
+    if not 0 <= told <= _EXPANSION * len(data):
+        return f"array '{name}' announces more than it can hold"
+    if data[start : start + 7] == b"<Array ":
+        found = _count(data, start, about, root)
+        return None if found == told else f"strings '{name}' are {found}, not {told}"
+    packed = root.get(b"compressor") and about.get(b"format") != b"ascii"
+    if packed and not _may_unpack(_reader(data, start, about, root), len(data)):
+        return f"array '{name}' announces more than it can hold"
+    return None
 
 
 def _tags(data: mmap.mmap, end: int) -> Iterator[int]:
