@@ -66,7 +66,8 @@ def _wrong_with(
         found = _count(data, start, about, root)
         return None if found == told else f"strings '{name}' are {found}, not {told}"
     packed = root.get(b"compressor") and about.get(b"format") != b"ascii"
-    if packed and not _may_unpack(_reader(data, start, about, root), len(data)):
+    read = _reader(data, start, about, root)
+    if packed and not _may_unpack(read, len(data), empty=about.get(b"NumberOfTuples") == b"0"):
         return f"array '{name}' announces more than it can hold"
     return None
 
@@ -89,11 +90,11 @@ def _may_be_there(extent: bytes, file_bytes: int) -> bool:
     return least >= 0 and longest <= _LONGEST and math.prod(counts) <= limit
 
 
-def _may_unpack(read: _Reader, file_bytes: int) -> bool:
-    """Tell whether packed blocks may be as large as they announce."""
+def _may_unpack(read: _Reader, file_bytes: int, *, empty: bool) -> bool:
+    """Tell whether packed blocks may be as large as they announce; none only of an empty array."""
     blocks, size, last = read.numbers(3)
     if blocks == 0:
-        return True
+        return empty
     if (
         size == 0
         or blocks > file_bytes

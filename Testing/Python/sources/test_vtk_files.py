@@ -2,10 +2,11 @@
 
 import itertools
 import pickle
+import re
 
 import numpy as np
 import pytest
-from vtkmodules.vtkCommonCore import vtkStringArray
+from vtkmodules.vtkCommonCore import vtkFloatArray, vtkStringArray
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 import progiso
@@ -74,6 +75,21 @@ def test_packed_data_of_another_kind_of_numbers(tmp_path):
     path = tmp_path / "volume.vti"
     write(make_image(blobs((5, 6, 7))), path, "Appended", 0, "ZLib")
     path.write_bytes(path.read_bytes().replace(b'header_type="UInt64"', b""))
+    with pytest.raises(ValueError, match="announces more than it can hold"):
+        open_source(path)
+
+
+def test_packed_data_of_no_blocks(tmp_path):
+    """An array of samples has some; an empty one has none."""
+    path, nothing = tmp_path / "volume.vti", vtkFloatArray()
+    image = make_image(blobs((5, 6, 7)))
+    nothing.SetName("nothing")
+    image.GetFieldData().AddArray(nothing)
+    write(image, path, "Appended", 0, "ZLib")
+    assert open_source(path).read().shape == (5, 6, 7)
+    data = path.read_bytes()
+    before, offset, after = re.split(rb'offset="([1-9]\d*)"', data)  # of the samples
+    path.write_bytes(before + b'offset="%d"' % (int(offset) + 1) + after)
     with pytest.raises(ValueError, match="announces more than it can hold"):
         open_source(path)
 
