@@ -46,7 +46,7 @@ def _read(parsed: argparse.Namespace, name: str = "file") -> vtkImageData:
     """Read the input as a whole."""
     with _open(parsed, name) as source, _reading(parsed, name) as progress:
         image = source.image(progress)
-    if not source.more_than_samples and hasattr(parsed, "array"):
+    if not source.gives_all_arrays and hasattr(parsed, "array"):
         parsed.array = None  # it has chosen the samples, which have a name of their own
     return image
 

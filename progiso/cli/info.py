@@ -23,7 +23,7 @@ def describe_source(source: Source, progress: Progress | None) -> dict[str, Any]
 
     Samples are read some slices at a time, unless the format gives whole images.
     """
-    if source.more_than_samples:
+    if source.gives_all_arrays:
         return {**describe_image(source.image(progress)), **_describe_header(source)}
     image = vtkImageData()
     image.SetDimensions(source.about.dimensions)

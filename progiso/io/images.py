@@ -34,6 +34,7 @@ class ImageSource(Source):
 
     concurrent = True
     more_than_samples = True
+    gives_all_arrays = True
 
     def __init__(self, what: object, image: vtkDataObject | None, array: str | None = None) -> None:
         self._image = checked_image(what, image)

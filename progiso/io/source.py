@@ -215,6 +215,9 @@ class Source(ABC):
     #: Whether `image` gives more than the samples, so that what works on images has to have it.
     more_than_samples: bool = False
 
+    #: Whether `image` gives all arrays of the file, so that one has to be chosen of it again.
+    gives_all_arrays: bool = False
+
     #: VTK's number of the samples' type, where NumPy's type has several.
     vtk_type: int | None = None
 

@@ -78,6 +78,8 @@ def _plain_array(path: Path, reader: Any, wanted: str | None) -> str | None:
 class ExtentSource(Source):
     """An array of points in a file that VTK reads by extent."""
 
+    gives_all_arrays = True
+
     def __init__(self, path: Path, make: Callable[[], Any], array: str) -> None:
         self._path, self._make, self._array = path, make, array
         with vtk_errors(f"cannot read '{path}'"):
@@ -138,7 +140,9 @@ class ExtentSource(Source):
         return values.reshape(*(part.stop - part.start for part in region), *values.shape[1:])
 
     def image(self, progress: Progress | None = None) -> vtkImageData:
-        return checked_image(self._path, read_with(self._make(), self._path, progress))
+        image = checked_image(self._path, read_with(self._make(), self._path, progress))
+        image.GetPointData().SetActiveScalars(self._array)
+        return image
 
     def place(self, image: vtkImageData) -> None:
         place_as(image, self._frame)

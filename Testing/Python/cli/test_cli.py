@@ -8,6 +8,7 @@ import sys
 
 import numpy as np
 import pytest
+from vtkmodules.util.numpy_support import numpy_to_vtk
 
 import progiso
 from helpers.images import (
@@ -339,6 +340,31 @@ def test_errors_are_one_line(folder, case):
     assert "error" in lines[0] and word in lines[0]
     assert "Traceback" not in lines[0]
     assert not (folder / "x.vti").exists()
+
+
+def test_one_of_several_arrays(tmp_path):
+    """Every command takes the array that is asked for; `info` lists all."""
+    values = {"first": blobs((9, 10, 11)), "second": 50 * blobs((9, 10, 11), 7)}
+    image = make_image(values["first"])
+    image.GetPointData().GetScalars().SetName("first")
+    second = numpy_to_vtk(values["second"].reshape(-1), deep=True)
+    second.SetName("second")
+    image.GetPointData().AddArray(second)
+    progiso.save(image, tmp_path / "two.vti")
+    about = json.loads(call_progiso(tmp_path, "info", "two.vti", "--json"))
+    assert set(about["point arrays"]) == {"first", "second"}
+    isovalue, tolerance = float(np.median(values["second"])), 0.01
+    surface = progiso.contour(image, isovalue, array="second")
+    told = call_progiso(
+        tmp_path, "contour", "two.vti", "s.ply", "--isovalue", isovalue, "--array", "second"
+    )
+    assert f"{surface.GetNumberOfPolys()} triangles" in told and surface.GetNumberOfPolys() > 50
+    least = call_progiso(tmp_path, "rate", "two.vti", "--tolerance", tolerance, "--array", "second")
+    assert float(least) == progiso.least_rate(image, tolerance, array="second")
+    assert float(least) != progiso.least_rate(image, tolerance, array="first")
+    read = progiso.read(tmp_path / "two.vti", array="second")
+    assert read.GetPointData().GetScalars().GetName() == "second"
+    assert read.GetPointData().GetNumberOfArrays() == 2
 
 
 # --- data -----------------------------------------------------------------------------------------
