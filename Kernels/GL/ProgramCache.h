@@ -89,6 +89,7 @@ private:
   std::map<std::string, std::shared_ptr<Program>> BySource; ///< scenes may have the same
   bool ByExtensions; ///< the context is older than 4.3 but offers what we need
   bool InBackground; ///< the driver compiles in threads of its own
+  int SlowRequests = 0; ///< took so long that the driver seems to compile in them
   bool CountsErrors = false;
   int GLErrors = 0;
 };
