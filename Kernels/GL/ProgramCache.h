@@ -87,8 +87,8 @@ private:
   /// By stage and features of the scene.
   std::map<std::pair<Stage, std::uint32_t>, std::shared_ptr<Program>> Programs;
   std::map<std::string, std::shared_ptr<Program>> BySource; ///< scenes may have the same
-  bool ByExtensions; ///< the context is older than 4.3 but offers what we need
-  bool InBackground; ///< the driver compiles in threads of its own
+  bool ByExtensions;    ///< the context is older than 4.3 but offers what we need
+  bool InBackground;    ///< the driver compiles in threads of its own
   int SlowRequests = 0; ///< took so long that the driver seems to compile in them
   bool CountsErrors = false;
   int GLErrors = 0;

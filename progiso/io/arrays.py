@@ -7,22 +7,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from .._typing import Array, Dimensions, ImageLike
 from .._vtk import image_data
 from ..geometry import image_of_samples, plain_samples
+from .axes import even_step, roles_of
 from .source import Description, Geometry, Region, Selection, Source
-
-#: Names of an xarray's dimensions by the axis that they mean; what is left is z.
-_NAMES = {"x": ("x", "lon", "longitude", "nx"), "y": ("y", "lat", "latitude", "ny")}
 
 #: Attributes of an xarray that tell what stands for no value, where it was not decoded.
 _FILLS = ("_FillValue", "missing_value", "nodata")
-
-#: How far the steps of a coordinate may differ from their mean, as part of it.
-_EVEN = 1e-3
 
 
 class ArraySource(Source):
@@ -240,11 +234,12 @@ def _of_xarray(array: Any, axes: str | None) -> Source:
         index = "xyz".index(axis)
         first, step = 0.0, 1.0
         if name in array.coords:
-            placed = even_steps(array.coords[name].values)
-            if placed is None:
+            coordinates = array.coords[name].values
+            placed = even_step(coordinates)
+            if placed.size is None and coordinates.size > 1:
                 notes.append(f"coordinate '{name}' is not evenly spaced: its indices are taken")
             else:
-                first, step = placed
+                first, step = placed.start, placed.size or 1.0
         vectors[index, index], origin[index] = step, first
     return ArraySource(
         array,
@@ -259,23 +254,6 @@ def _of_xarray(array: Any, axes: str | None) -> Source:
 
 def _axes_named(names: Sequence[Any]) -> str:
     """Return the axes that the names of dimensions mean; "xyz" where they mean nothing."""
-    found = [
-        next((axis for axis, known in _NAMES.items() if str(name).lower() in known), "z")
-        for name in names
-    ]
+    roles = roles_of([str(name) for name in names])
+    found = [role if role in ("x", "y") else "z" for role in roles]
     return "".join(found) if sorted(found) == ["x", "y", "z"] else "xyz"
-
-
-def even_steps(values: npt.ArrayLike) -> tuple[float, float] | None:
-    """Return the first of evenly spaced values and their step, or None where they are not."""
-    points = np.asarray(values)
-    if points.dtype.kind not in "iuf" or points.ndim != 1 or not np.isfinite(points).all():
-        return None
-    points = points.astype(float)
-    if len(points) < 2:
-        return float(points[0]), 1.0
-    steps = np.diff(points)
-    mean = float(steps.mean())
-    if mean == 0 or np.abs(steps - mean).max() > _EVEN * abs(mean):
-        return None
-    return float(points[0]), mean

@@ -18,8 +18,8 @@ _ROLES = {
     "t": ("t", "time", "times", "frame", "frames", "phony_time"),
     "c": ("c", "channel", "channels", "band", "bands"),
     "z": ("z", "depth", "slice", "slices", "plane", "planes"),
-    "y": ("y", "row", "rows", "height"),
-    "x": ("x", "column", "columns", "width"),
+    "y": ("y", "row", "rows", "height", "ny", "lat", "latitude"),
+    "x": ("x", "column", "columns", "width", "nx", "lon", "longitude"),
     "s": ("s", "sample", "samples", "rgb", "rgba", "component", "components", "vector"),
 }
 _ROLE_OF = {name: role for role, names in _ROLES.items() for name in names}
@@ -171,6 +171,20 @@ def role_of(name: str) -> str:
     return _ROLE_OF.get(name.lower(), name.lower())
 
 
+def roles_of(names: Sequence[str]) -> list[str]:
+    """Return what the axes of an array are, see `role_of`: a height above latitudes is z.
+
+    Examples
+    --------
+    >>> roles_of(["time", "height", "lat", "lon"]), roles_of(["height", "width"])
+    (['t', 'z', 'y', 'x'], ['y', 'x'])
+    """
+    roles = [role_of(name) for name in names]
+    if roles.count("y") > 1:
+        roles = ["z" if name.lower() == "height" else role for name, role in zip(names, roles)]
+    return roles
+
+
 def choose(
     what: object,
     kind: str,
@@ -237,8 +251,11 @@ def unit_of(text: object) -> str | None:
 
 def even_step(values: npt.ArrayLike, unit: str | None = None) -> Step:
     """Return the step of coordinates, without a size where they are not evenly spaced."""
-    found = np.asarray(values, np.float64)
-    if found.ndim != 1 or found.size == 0 or not np.isfinite(found).all():
+    found = np.asarray(values)
+    if found.dtype.kind not in "iuf" or found.ndim != 1 or found.size == 0:
+        return Step()
+    found = found.astype(np.float64)
+    if not np.isfinite(found).all():
         return Step()
     if found.size == 1:
         return Step(None, float(found[0]), unit)
@@ -322,12 +339,25 @@ class Values:
             )
         return found.astype(self.dtype, copy=False)
 
-    def hidden(self, found: Array) -> npt.NDArray[np.bool_]:
-        """Tell which stored numbers, of a sample's components any, stand for no value."""
+    def mask(self, found: Array, components: int = 1) -> Array:
+        """Turn stored numbers into samples, masked where one stands for no value.
+
+        Parameters
+        ----------
+        found : numpy.ndarray
+            The numbers.
+        components : int
+            Of a sample, along the last axis, if there are several: without one of them it has none.
+        """
+        samples = self.decode(found)
+        if not self.missing:
+            return samples
         mask = np.zeros(found.shape, bool)
         for value in self.missing:
             mask |= np.isnan(found) if value != value else found == value
-        return np.asarray(mask.any(axis=-1), bool) if mask.ndim == 4 else mask
+        if components > 1:
+            mask |= mask.any(axis=-1, keepdims=True)
+        return np.ma.MaskedArray(samples, mask)
 
     def _dtype(self) -> np.dtype[Any]:
         if self.scaled:
@@ -348,28 +378,14 @@ class AxesSource(Source):
     def __init__(self, about: Description, layout: Layout, values: Values) -> None:
         super().__init__(about)
         self._layout, self._values = layout, values
-        self._last: tuple[Region, Array] | None = None
 
     @abstractmethod
     def _fetch(self, index: tuple[int | slice, ...]) -> Array:
         """Read stored numbers; axes with an int as index fall away."""
 
     def _read(self, region: Region) -> Array:
-        found = self._stored(region)
-        self._last = (region, found) if self.about.masked else None
-        return self._values.decode(found)
-
-    def _hidden(self, region: Region) -> npt.NDArray[np.bool_]:
-        # what was read last is asked for most often: slabs are read, and then their mask
-        last, self._last = self._last, None
-        found = last[1] if last is not None and last[0] == region else self._stored(region)
-        return self._values.hidden(found)
-
-    def _stored(self, region: Region) -> Array:
-        return self._layout.arrange(self._fetch(self._layout.index(region)))
-
-    def __getstate__(self) -> dict[str, Any]:
-        return super().__getstate__() | {"_last": None}
+        found = self._layout.arrange(self._fetch(self._layout.index(region)))
+        return self._values.mask(found, self.about.components)
 
 
 def _roles(
@@ -378,7 +394,7 @@ def _roles(
     """Return each axis' role, "" where it has length 1 and no other, and notes."""
     notes: list[str] = []
     if axes is not None:
-        roles = [role_of(name) for name in axes]
+        roles = roles_of(axes)
     else:
         roles = _guessed(what, shape, selection, notes)
     doubtful = [i for i, role in enumerate(roles) if role not in _ROLES or roles.count(role) > 1]

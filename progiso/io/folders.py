@@ -121,14 +121,14 @@ class SliceSource(Source):
         shape = [part.stop - part.start for part in region]
         if self.about.components > 1:
             shape.append(self.about.components)
-        found = np.empty(shape, self.dtype)
+        found = np.ma.MaskedArray(np.empty(shape, self.dtype))
         for place_, file in enumerate(self._files[slices]):
             with reading(file):
                 samples = _picture(file).read(rows, columns)
             if self._component is not None and samples.ndim == 3:
                 samples = samples[..., self._component]
             found[place_] = self._values.decode(samples)
-        return found
+        return found if np.ma.is_masked(found) else found.data
 
 
 def series_of(files: Sequence[Path]) -> list[Series]:

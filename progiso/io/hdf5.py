@@ -88,7 +88,6 @@ def open_hdf5(path: Path, selection: Selection) -> Source:
             channels=layout.channels,
             times=layout.times,
             labels=meta.labels,
-            masked=bool(values.missing),
             notes=tuple(notes),
         )
         return Hdf5Source(path, dataset.name, about, layout, values)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from .._typing import Array
-from .axes import Step, even_step, role_of, unit_of
+from .axes import Step, even_step, roles_of, unit_of
 
 #: How many arrays a message lists.
 _LISTED = 30
@@ -65,12 +65,12 @@ def positional(names: Sequence[str], units: Mapping[int, object]) -> list[str]:
     Parameters
     ----------
     names : sequence of str
-        Of all axes. Those of time, channels and components count, as do "z", "y" and "x" where all
-        three are there.
+        Of all axes. Those of time, channels and components count, as do those of y and x where both
+        are there, and of z or of one other axis.
     units : mapping of int to object
         Of coordinates, by number of axis; "days since ..." is time.
     """
-    roles = [role_of(name) for name in names]
+    roles = roles_of(names)
     for position, unit in units.items():
         text = unit.decode("utf-8", "replace") if isinstance(unit, bytes) else str(unit)
         if " since " in text:
@@ -78,6 +78,10 @@ def positional(names: Sequence[str], units: Mapping[int, object]) -> list[str]:
     if {"z", "y", "x"} <= set(roles):
         return roles
     kept = [i for i, role in enumerate(roles) if role not in ("t", "c", "s")]
+    others = [i for i in kept if roles[i] not in ("y", "x")]
+    if len(kept) == 3 and {"y", "x"} <= set(roles) and len(others) == 1:
+        roles[others[0]] = "z"
+        return roles
     for axis, i in zip("xyz", reversed(kept)):
         roles[i] = axis
     return roles

@@ -164,8 +164,6 @@ class Description:
         Names of the images or series that can be selected; empty where there is but one.
     labels : bool or None
         Whether samples are labels (True) or intensities (False); None where the file does not tell.
-    masked : bool
-        Whether the file tells of samples that have no value; `Source.hidden` says which.
     notes : tuple of str
         What a user should know: what was chosen by default, what the file does not tell.
     """
@@ -182,7 +180,6 @@ class Description:
     times: int = 1
     series: tuple[str, ...] = ()
     labels: bool | None = None
-    masked: bool = False
     notes: tuple[str, ...] = ()
 
     @property
@@ -237,10 +234,6 @@ class Source(ABC):
     def _read(self, region: Region) -> Array:
         """Read a region that lies inside; any layout, of the type that `about` tells."""
 
-    def _hidden(self, region: Region) -> npt.NDArray[np.bool_]:
-        """Tell which samples of a region have no value; only where `about.masked`."""
-        raise NotImplementedError
-
     def _open(self) -> Any:
         """Open what `handle` returns; it is closed by its method ``close``, if it has one."""
         raise NotImplementedError
@@ -277,7 +270,8 @@ class Source(ABC):
         -------
         numpy.ndarray, shape (depth, height, width) or (depth, height, width, components)
             In native byte order. It may be a view of a file: do not write to it. A masked array
-            where an array of that kind is read.
+            where the file tells of samples that have no value (a mask, a fill value, "no data"),
+            or an array of that kind is read.
 
         Raises
         ------
@@ -298,38 +292,18 @@ class Source(ABC):
             )
         return found
 
-    def hidden(self, region: Region | None = None) -> npt.NDArray[np.bool_] | None:
-        """Tell which samples have no value (a mask, a fill value, "no data").
-
-        Returns
-        -------
-        numpy.ndarray of bool, shape (depth, height, width), or None
-            True where there is none; None where the file tells of no such samples.
-        """
-        if not self.about.masked:
-            return None
-        inside = self._inside(region)
-        with reading(self.about.what), self._lock:
-            return self._hidden(inside)
-
     def slabs(self) -> Iterator[Array]:
         """Read everything some slices at a time, from the first to the last.
 
         Yields
         ------
         numpy.ndarray or numpy.ma.MaskedArray
-            The next slices as by `read`, a multiple of 4 of them unless they are the last; masked
-            where samples have no value.
+            The next slices as by `read`, a multiple of 4 of them unless they are the last.
         """
         depth = self.shape[0]
         step = self._slices_at_a_time()
         for first in range(0, depth, step):
-            part = (slice(first, min(first + step, depth)), slice(None), slice(None))
-            samples, hidden = self.read(part), self.hidden(part)
-            if hidden is not None and self.about.components > 1:
-                hidden = np.broadcast_to(hidden[..., np.newaxis], samples.shape)
-            yield samples if hidden is None else np.ma.MaskedArray(samples, hidden)
-            del samples, hidden  # before the next are read
+            yield self.read((slice(first, min(first + step, depth)), slice(None), slice(None)))
 
     def image(self, progress: Progress | None = None) -> vtkImageData:
         """Read everything as an image whose active point scalars are the samples.
@@ -346,12 +320,9 @@ class Source(ABC):
             components=about.components,
         )
         self.place(image)
-        hidden = self.hidden()
-        if hidden is None and np.ma.is_masked(samples):
+        if np.ma.is_masked(samples):
             mask = np.ma.getmaskarray(samples).reshape(*self.shape, -1)
-            hidden = np.asarray(mask.any(axis=-1))
-        if hidden is not None and hidden.any():
-            hide_points(image, hidden)
+            hide_points(image, np.asarray(mask.any(axis=-1)))
         if progress is not None:
             progress(1.0)
         return image

@@ -98,7 +98,6 @@ def open_tiff(path: Path, selection: Selection) -> Source:
             channels=layout.channels,
             times=layout.times,
             series=tuple(names) if len(names) > 1 else (),
-            masked=bool(missing),
             notes=tuple(notes),
         )
     return TiffSource(path, number, level, about, layout, values)

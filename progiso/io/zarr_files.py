@@ -429,7 +429,6 @@ def _described(
         times=layout.times,
         series=series,
         labels=labels,
-        masked=bool(values.missing),
         notes=tuple(told),
     )
     return ZarrSource(path, array.path, about, layout, values)

@@ -10,7 +10,8 @@ from vtkmodules.vtkCommonDataModel import vtkRectilinearGrid
 import progiso
 from helpers.images import check_same, samples_of
 from progiso.io import open_source, source
-from progiso.io.arrays import as_image, even_steps, source_of
+from progiso.io.arrays import as_image, source_of
+from progiso.io.axes import even_step
 
 SHAPE = (9, 10, 11)
 
@@ -138,6 +139,25 @@ def test_coordinates_of_xarray():
     assert np.array_equal(samples_of(image), values())
 
 
+@pytest.mark.parametrize("names", [("height", "lat", "lon"), ("lat", "lon", "level")])
+def test_axes_of_xarray_and_of_its_file(names, tmp_path):
+    """An array and the file that it is written to are read alike."""
+    xarray, h5py = pytest.importorskip("xarray"), pytest.importorskip("h5py")
+    coords = {name: 2.0 * np.arange(n) for name, n in zip(names, values().shape)}
+    array = xarray.DataArray(values(), coords=coords, dims=names, name="pressure")
+    with h5py.File(tmp_path / "a.nc", "w") as file:  # as NetCDF's library writes it
+        file["pressure"] = values()
+        for dimension, name in zip(file["pressure"].dims, names):
+            file[name] = coords[name]
+            file[name].make_scale(name)
+            dimension.attach_scale(file[name])
+    image, read = as_image(array), progiso.read(tmp_path / "a.nc")
+    level = names.index("height" if "height" in names else "level")
+    assert image.GetDimensions() == read.GetDimensions()
+    assert image.GetDimensions()[2] == values().shape[level]
+    assert np.array_equal(samples_of(image), samples_of(read))
+
+
 def test_fill_values_of_xarray():
     xarray = pytest.importorskip("xarray")
     filled = np.where(values() < 10, -32768, values()).astype("i2")
@@ -195,8 +215,8 @@ def test_what_is_no_volume():
             progiso.compress(wrong)
 
 
-def test_even_steps():
-    assert even_steps([3.0, 2.5, 2.0]) == (3, -0.5)
-    assert even_steps([7]) == (7, 1) and even_steps([1, 1]) is None
-    assert even_steps([0, 1, 3]) is None and even_steps(["a", "b"]) is None
-    assert even_steps(np.array([0, 1, np.nan])) is None
+def test_even_step():
+    assert even_step([3.0, 2.5, 2.0]) == (-0.5, 3, None)
+    assert even_step([7]) == (None, 7, None)
+    uneven = [[1, 1], [0, 1, 3], ["a", "b"], [0, 1, np.nan], np.array([0, 1], "M8[D]"), []]
+    assert all(even_step(values) == (None, 0, None) for values in uneven)

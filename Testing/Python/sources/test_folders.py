@@ -48,6 +48,14 @@ def test_colours(tmp_path):
         opened(folder, component=3)
 
 
+def test_no_data_in_slices(tmp_path):
+    expected = ramp().astype("f4")
+    folder = slices(tmp_path / "a", expected, extratags=[(42113, "s", 0, "17", True)])
+    hidden = np.ma.getmaskarray(opened(folder).read())
+    np.testing.assert_array_equal(hidden, expected == 17)
+    assert hidden.sum() == 1
+
+
 def test_jpeg_as_pillow_reads_it(tmp_path):
     folder = slices(tmp_path / "a", ramp((3, 16, 16)).astype("u1"), "s{}.jpg")
     check(opened(folder), np.stack([Image.open(folder / f"s{i}.jpg") for i in range(3)]))

@@ -173,11 +173,12 @@ def test_netcdf(tmp_path):
         origin=(-5, 50, 0),
         units="degrees",
     )
-    assert source.about.times == 3 and source.about.masked
-    np.testing.assert_array_equal(source.hidden(), stored[2] == -7)
-    assert source.hidden().sum() == 3
+    assert source.about.times == 3
+    hidden = np.ma.getmaskarray(source.read())
+    np.testing.assert_array_equal(hidden, stored[2] == -7)
+    assert hidden.sum() == 3
     region = (slice(0, 2), slice(0, 3), slice(2, 5))
-    np.testing.assert_array_equal(source.hidden(region), (stored[2] == -7)[region])
+    np.testing.assert_array_equal(source.read(region).mask, (stored[2] == -7)[region])
 
 
 def test_uneven_coordinates_are_told(tmp_path):
@@ -194,7 +195,7 @@ def test_nan_as_fill_value(tmp_path):
     with h5py.File(path, "w") as file:
         file["a"] = expected
         file["a"].attrs["_FillValue"] = np.float32(np.nan)
-    np.testing.assert_array_equal(opened(path).hidden(), np.isnan(expected))
+    np.testing.assert_array_equal(opened(path).read().mask, np.isnan(expected))
 
 
 def test_classic_netcdf_is_told(tmp_path):

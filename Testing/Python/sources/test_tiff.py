@@ -201,8 +201,9 @@ def test_nodata_is_hidden(tmp_path):
         tmp_path, expected, metadata=None, extratags=[(42113, "s", 0, "17", True)], rowsperstrip=9
     )
     source = opened(path)
-    np.testing.assert_array_equal(source.hidden(), expected == 17)
-    assert source.hidden().sum() == 1
+    hidden = np.ma.getmaskarray(source.read())
+    np.testing.assert_array_equal(hidden, expected == 17)
+    assert hidden.sum() == 1
 
 
 def test_four_axes_without_names_are_no_volume(tmp_path):
