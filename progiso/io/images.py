@@ -40,6 +40,8 @@ class ImageSource(Source):
         self._image = checked_image(what, image)
         self._array = array
         super().__init__(_describe(what, self._image, array))
+        if array is not None and not is_compressed(self._image):
+            make_active(self._image, array)
 
     def _open(self) -> Array:
         image = decompress(self._image) if is_compressed(self._image) else self._image
@@ -68,6 +70,15 @@ def checked_image(what: object, image: vtkDataObject | None) -> vtkImageData:
     if image.GetNumberOfPoints() == 0:
         raise ValueError(f"'{what}' holds an empty image")
     return image
+
+
+def make_active(image: vtkImageData, array: str) -> None:
+    """Make an array of points or cells the one that an image is taken for."""
+    _, of_cells = find_array(image, array)
+    points, cells = image.GetPointData(), image.GetCellData()
+    points.SetActiveScalars(None if of_cells else array)
+    if of_cells:
+        cells.SetActiveScalars(array)
 
 
 def place_as(image: vtkImageData, other: vtkImageData) -> None:

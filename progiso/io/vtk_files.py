@@ -24,7 +24,7 @@ from ..compression import is_compressed
 from ..geometry import GHOSTS
 from .files import DISK_FULL
 from .footer import add_footer, check_footer
-from .images import ImageSource, checked_image, geometry_of, place_as
+from .images import ImageSource, checked_image, geometry_of, make_active, place_as
 from .source import Description, Region, Selection, Source
 from .vti_check import check_vti
 
@@ -141,7 +141,7 @@ class ExtentSource(Source):
 
     def image(self, progress: Progress | None = None) -> vtkImageData:
         image = checked_image(self._path, read_with(self._make(), self._path, progress))
-        image.GetPointData().SetActiveScalars(self._array)
+        make_active(image, self._array)
         return image
 
     def place(self, image: vtkImageData) -> None:

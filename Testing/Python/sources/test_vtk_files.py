@@ -7,10 +7,13 @@ import re
 import numpy as np
 import pytest
 from vtkmodules.vtkCommonCore import vtkFloatArray, vtkStringArray
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkIOLegacy import vtkDataSetWriter
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 import progiso
 from helpers.images import blobs, check_same, make_image
+from progiso.compression import find_array
 from progiso.io import open_source
 
 STYLES = list(
@@ -132,3 +135,31 @@ def test_by_extent(tmp_path):
     compressed = progiso.compress_file(path, rate=7)
     check_same(compressed, progiso.compress(image, rate=7))
     assert compressed.GetExtent() == image.GetExtent()
+
+
+@pytest.mark.parametrize("wanted", ["a", "b", "c"])
+@pytest.mark.parametrize("suffix", [".vti", ".vtk"])
+def test_the_array_that_is_asked_for_is_active(wanted, suffix, tmp_path):
+    image = vtkImageData()
+    image.SetDimensions(5, 6, 7)
+    for name, data in (("a", "Point"), ("b", "Point"), ("c", "Cell")):
+        array = vtkFloatArray()
+        array.SetName(name)
+        array.SetNumberOfTuples(getattr(image, f"GetNumberOf{data}s")())
+        array.Fill(ord(name))
+        attributes = getattr(image, f"Get{data}Data")()
+        attributes.AddArray(array)
+        attributes.SetActiveScalars(name)
+    path = tmp_path / f"volume{suffix}"
+    if suffix == ".vti":
+        write(image, path)
+    else:
+        writer = vtkDataSetWriter()
+        writer.SetInputData(image)
+        writer.SetFileName(str(path))
+        assert writer.Write()
+    read = progiso.read(path, array=wanted)
+    assert find_array(read)[0].GetName() == wanted
+    assert read.GetPointData().GetNumberOfArrays() + read.GetCellData().GetNumberOfArrays() == 3
+    volume = progiso.compress(read, rate=8)
+    assert progiso.describe(volume)["array"] == wanted
