@@ -16,7 +16,7 @@
  * - ProgIso.ZFP.Range (2 doubles): smallest and largest sample before encoding, as float32
  * - ProgIso.ZFP.ScalarType (int): VTK type of the original array
  * - ProgIso.ZFP.ArrayName (string): name of the original array
- * - ProgIso.ZFP.Component (int): component of the original array
+ * - ProgIso.ZFP.Component (int): component of the original array, or -1: its magnitude
  * - ProgIso.ZFP.Association (int): 0 point data, 1 cell data
  * - ProgIso.ZFP.Extent (6 integers, optional): the image extent that the stream covers
  * - ProgIso.ZFP.HiddenSamples, ProgIso.ZFP.HiddenCells (pairs of unsigned 64-bit integers,
@@ -91,6 +91,11 @@ public:
   {
     PointData = 0,
     CellData = 1
+  };
+
+  enum
+  {
+    Magnitude = -1 ///< in place of a component: the length of the array's vectors
   };
 
   /**
@@ -267,7 +272,8 @@ public:
 
   ///@{
   /**
-   * VTK type (VTK_SHORT, ...), name and component of the original array.
+   * VTK type (VTK_SHORT, ...), name and component (or Magnitude) of the original array. The type is
+   * that of the samples: magnitudes are VTK_FLOAT or VTK_DOUBLE.
    */
   vtkGetMacro(ScalarType, int);
   vtkSetMacro(ScalarType, int);

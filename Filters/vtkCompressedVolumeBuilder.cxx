@@ -5,6 +5,7 @@
 #include "Codec/ArrayMemory.h"
 #include "Codec/BlockGeometry.h"
 #include "Codec/BlockStream.h"
+#include "Codec/Magnitude.h"
 #include "Codec/SampleEncoder.h"
 #include "Status.h"
 
@@ -39,7 +40,7 @@ struct vtkCompressedVolumeBuilder::Work
   }
 
   Status CheckSlab(vtkDataArray* samples, int component, vtkUnsignedCharArray* hidden) const;
-  Status AddSlab(vtkDataArray* samples, int component, int threads);
+  Status AddSlab(const ChosenSamples& samples, int threads);
 
   int Dimensions[3];
   int BlockBits;
@@ -73,38 +74,39 @@ Status vtkCompressedVolumeBuilder::Work::CheckSlab(
     return Status::Error("The slab has ", slices,
       " slices: only the last may have another number than a multiple of 4.");
   }
-  if (component < 0 || component >= samples->GetNumberOfComponents())
+  if (!HasComponent(samples, component))
   {
     return Status::Error("Component is ", component, ", but the slab has ",
-      samples->GetNumberOfComponents(), " component(s).");
+      samples->GetNumberOfComponents(), " component(s), and -1 for its magnitude.");
   }
   if (hidden && hidden->GetNumberOfValues() != tuples)
   {
     return Status::Error(
       "There are ", hidden->GetNumberOfValues(), " values that hide ", tuples, " samples.");
   }
-  if (this->Slices > 0 && samples->GetDataType() != this->ScalarType)
-  {
-    return Status::Error("The slab is of type ", samples->GetDataTypeAsString(),
-      ", but those before of ", vtkImageScalarTypeNameMacro(this->ScalarType), ".");
-  }
   return {};
 }
 
 //------------------------------------------------------------------------------
-Status vtkCompressedVolumeBuilder::Work::AddSlab(vtkDataArray* samples, int component, int threads)
+Status vtkCompressedVolumeBuilder::Work::AddSlab(const ChosenSamples& samples, int threads)
 {
+  vtkDataArray* const array = samples.Array;
   if (this->Slices == 0)
   {
-    this->ScalarType = samples->GetDataType();
-    this->Component = component;
-    this->ArrayName = samples->GetName() ? samples->GetName() : "";
+    this->ScalarType = array->GetDataType();
+    this->Component = samples.Original;
+    this->ArrayName = array->GetName() ? array->GetName() : "";
+  }
+  if (array->GetDataType() != this->ScalarType)
+  {
+    return Status::Error("The slab is of type ", array->GetDataTypeAsString(),
+      ", but those before of ", vtkImageScalarTypeNameMacro(this->ScalarType), ".");
   }
   const int end =
-    this->Slices + static_cast<int>(samples->GetNumberOfTuples() / this->SamplesPerSlice());
+    this->Slices + static_cast<int>(array->GetNumberOfTuples() / this->SamplesPerSlice());
   BlockStream blocks(this->Dimensions, this->BlockBits, this->Stream->GetPointer(0), threads);
-  this->Encoder.EncodeSlabs(blocks, this->Slices / BlockSide, BlocksAlong(end), samples, component,
-    [](double) { return true; });
+  this->Encoder.EncodeSlabs(blocks, this->Slices / BlockSide, BlocksAlong(end), array,
+    samples.Component, [](double) { return true; });
   const SampleSummary& summary = this->Encoder.GetSummary();
   if (!summary.IsFinite())
   {
@@ -196,13 +198,18 @@ bool vtkCompressedVolumeBuilder::AddSlab(
     return this->SetErrorWithoutVolume();
   }
   Status status = this->Volume->CheckSlab(samples, component, hidden);
+  ChosenSamples chosen;
+  if (status)
+  {
+    status = ChooseSamples(samples, component, chosen);
+  }
   if (status)
   {
     SampleEncoder& encoder = this->Volume->Encoder;
     encoder.Hidden = HiddenSamples::FromMask(hidden);
-    encoder.Hidden.HideNonFinite = this->MaskNonFinite;
+    encoder.Hidden.HideNonFinite = this->MaskNonFinite && HasNonFinite(chosen.Array);
     encoder.Units = { this->Offset, this->Scale };
-    status = this->Volume->AddSlab(samples, component, this->NumberOfThreads);
+    status = this->Volume->AddSlab(chosen, this->NumberOfThreads);
   }
   if (!status)
   {

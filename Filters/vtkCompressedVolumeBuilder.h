@@ -50,7 +50,7 @@ public:
   ///@{
   /**
    * Whether NaN and infinite samples (as float32) are hidden, as in vtkImageZFPCompress. Default
-   * off: they are an error. Must not change between slabs.
+   * on; off: they are an error. Must not change between slabs.
    */
   vtkSetMacro(MaskNonFinite, bool);
   vtkGetMacro(MaskNonFinite, bool);
@@ -84,10 +84,11 @@ public:
   bool Start(const int dims[3], double rate);
 
   /**
-   * Compresses the next slices: one component of an array whose number of tuples is a multiple of
-   * dims[0]*dims[1], x fastest. Every slab except the last must have a multiple of 4 slices, and
-   * all must have one type. See MaskNonFinite for NaN. `hidden` has a value other than 0 for each
-   * sample that is hidden, whatever its value; null: none is.
+   * Compresses the next slices: one component (-1: the magnitude, see vtkImageZFPCompress) of an
+   * array whose number of tuples is a multiple of dims[0]*dims[1], x fastest. Every slab except the
+   * last must have a multiple of 4 slices, and all must have one type. See MaskNonFinite for NaN.
+   * `hidden` has a value other than 0 for each sample that is hidden, whatever its value; null:
+   * none is.
    */
   bool AddSlab(vtkDataArray* samples, int component = 0, vtkUnsignedCharArray* hidden = nullptr);
 
@@ -124,7 +125,7 @@ private:
   std::string ArrayName;
   double Offset = 0.0;
   double Scale = 1.0;
-  bool MaskNonFinite = false;
+  bool MaskNonFinite = true;
   int NumberOfThreads = 0;
   std::string ErrorMessage;
   std::unique_ptr<Work> Volume; // null before Start() and after an error

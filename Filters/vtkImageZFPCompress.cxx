@@ -5,6 +5,7 @@
 #include "Codec/ArrayMemory.h"
 #include "Codec/BlockStream.h"
 #include "Codec/LabelDetector.h"
+#include "Codec/Magnitude.h"
 #include "Codec/RateFinder.h"
 #include "Codec/SampleEncoder.h"
 #include "Pieces/CompressedPart.h"
@@ -174,8 +175,8 @@ public:
 private:
   Status FindArray();
   Status CheckInput(const CompressedPart& part) const;
-  Status FindBlockBits(
-    const int dims[3], vtkDataArray* samples, const SampleEncoder& encoder, int& blockBits) const;
+  Status FindBlockBits(const int dims[3], const ChosenSamples& samples,
+    const SampleEncoder& encoder, int& blockBits) const;
   Status Compress(const CompressedPart& part, vtkImageData* output) const;
 
   vtkImageZFPCompress* Self;
@@ -242,10 +243,10 @@ Status vtkImageZFPCompress::Work::CheckInput(const CompressedPart& part) const
   {
     return Status::Error("Rate is ", rate, " bits per sample: it must be in (0, 32].");
   }
-  if (component < 0 || component >= this->Array->GetNumberOfComponents())
+  if (!HasComponent(this->Array, component))
   {
     return Status::Error("Component is ", component, ", but array '", name, "' has ",
-      this->Array->GetNumberOfComponents(), " component(s).");
+      this->Array->GetNumberOfComponents(), " component(s), and -1 for its magnitude.");
   }
   if (*std::min_element(dims, dims + 3) < 2)
   {
@@ -262,10 +263,10 @@ Status vtkImageZFPCompress::Work::CheckInput(const CompressedPart& part) const
 
 //------------------------------------------------------------------------------
 // Finds the rate that was asked for: itself, or by a tolerance, or by what the samples are.
-Status vtkImageZFPCompress::Work::FindBlockBits(
-  const int dims[3], vtkDataArray* samples, const SampleEncoder& encoder, int& blockBits) const
+Status vtkImageZFPCompress::Work::FindBlockBits(const int dims[3], const ChosenSamples& samples,
+  const SampleEncoder& encoder, int& blockBits) const
 {
-  const int component = this->Self->Component;
+  const int component = samples.Component;
   blockBits = vtkCompressedVolume::BlockBitsForRate(this->Self->Rate);
   RateFinder finder;
   finder.Units = encoder.Units;
@@ -274,7 +275,7 @@ Status vtkImageZFPCompress::Work::FindBlockBits(
   finder.Tolerance = this->Self->Tolerance;
   if (finder.Tolerance > 0.0)
   {
-    const bool isFound = finder.Find(dims, samples, component);
+    const bool isFound = finder.Find(dims, samples.Array, component);
     blockBits = finder.GetBlockBits();
     return isFound ? Status()
                    : Status::Error("No rate keeps the samples within ", finder.Tolerance,
@@ -284,13 +285,14 @@ Status vtkImageZFPCompress::Work::FindBlockBits(
   {
     LabelDetector detector;
     detector.Hidden = encoder.Hidden;
-    detector.AddSlabs(dims, 0, BlocksAlong<vtkTypeInt64>(dims[2]), samples, component);
+    detector.AddSlabs(dims, 0, BlocksAlong<vtkTypeInt64>(dims[2]), samples.Array, component);
     if (detector.FindsLabels())
     {
       finder.Tolerance = LabelDetector::Tolerance;
       finder.SetBlockBits(blockBits);
-      blockBits = finder.Find(dims, samples, component) ? finder.GetBlockBits()
-                                                        : +vtkCompressedVolume::MaximumBlockBits;
+      blockBits = finder.Find(dims, samples.Array, component)
+        ? finder.GetBlockBits()
+        : +vtkCompressedVolume::MaximumBlockBits;
     }
   }
   return {};
@@ -300,14 +302,18 @@ Status vtkImageZFPCompress::Work::FindBlockBits(
 Status vtkImageZFPCompress::Work::Compress(const CompressedPart& part, vtkImageData* output) const
 {
   const int* dims = part.Size;
-  const int component = this->Self->Component;
-  const vtkSmartPointer<vtkDataArray> samples = part.CutSamples(this->Array);
+  ChosenSamples samples;
+  if (Status status = ChooseSamples(part.CutSamples(this->Array), this->Self->Component, samples);
+      !status)
+  {
+    return Status::Error("There is ", status.GetMessage(), ".");
+  }
   const vtkSmartPointer<vtkUnsignedCharArray> flags = part.FindHiddenSamples(this->Input);
   SampleEncoder encoder;
   encoder.Hidden.Flags = flags ? flags->GetPointer(0) : nullptr;
   encoder.Hidden.HidingFlags = part.CellData ? HidingFlags::OfCells : HidingFlags::OfPoints;
-  encoder.Hidden.HideNonFinite = this->Self->MaskNonFinite;
-  encoder.Units = SampleUnits::Find(samples, component, encoder.Hidden);
+  encoder.Hidden.HideNonFinite = this->Self->MaskNonFinite && HasNonFinite(samples.Array);
+  encoder.Units = SampleUnits::Find(samples.Array, samples.Component, encoder.Hidden);
 
   int blockBits = 0;
   if (Status status = this->FindBlockBits(dims, samples, encoder, blockBits); !status)
@@ -321,8 +327,8 @@ Status vtkImageZFPCompress::Work::Compress(const CompressedPart& part, vtkImageD
     return Status::Error("There is ", status.GetMessage(), ".");
   }
   BlockStream blocks(dims, blockBits, stream->GetPointer(0), this->Self->NumberOfThreads);
-  if (!encoder.EncodeSlabs(
-        blocks, 0, blocks.GetNumberOfSlabs(), samples, component, ProgressOf(this->Self)))
+  if (!encoder.EncodeSlabs(blocks, 0, blocks.GetNumberOfSlabs(), samples.Array, samples.Component,
+        ProgressOf(this->Self)))
   {
     return Status::Aborted();
   }
@@ -343,9 +349,9 @@ Status vtkImageZFPCompress::Work::Compress(const CompressedPart& part, vtkImageD
   volume->SetMacrocellErrors(encoder.GetErrors().MakeArray());
   volume->SetHiddenSamples(encoder.GetMask());
   volume->SetHiddenCells(part.FindHiddenCells(this->Input));
-  volume->SetScalarType(this->Array->GetDataType());
+  volume->SetScalarType(samples.Array->GetDataType());
   volume->SetArrayName(NameOf(this->Array));
-  volume->SetComponent(component);
+  volume->SetComponent(samples.Original);
   volume->SetAssociation(this->Association);
   volume->SetExtent(part.Covered[0], part.Covered[1], part.Covered[2], part.Covered[3],
     part.Covered[4], part.Covered[5]);

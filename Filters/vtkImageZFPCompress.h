@@ -4,10 +4,10 @@
  * @class   vtkImageZFPCompress
  * @brief   compress one array of an image with fixed-rate ZFP
  *
- * Converts one component of a point or cell array of a vtkImageData, of any scalar type, to float32
- * and compresses it. The output is a compressed volume (see vtkCompressedVolume): a vtkImageData
- * with the same extent, spacing, origin and direction matrix, no point or cell arrays, and the
- * input's field data with the compressed stream and its metadata.
+ * Converts one component of a point or cell array of a vtkImageData, of any scalar type, or the
+ * magnitude of its vectors, to float32 and compresses it. The output is a compressed volume (see
+ * vtkCompressedVolume): a vtkImageData with the same extent, spacing, origin and direction matrix,
+ * no point or cell arrays, and the input's field data with the compressed stream and its metadata.
  *
  * If several processes share an image, each compresses its piece. Ghost cells are not in the
  * output's extent, but the stream covers as many of their samples as the piece needs to look the
@@ -35,8 +35,8 @@
  * a hundred times; an abort is noticed then, and leaves the output without a stream.
  *
  * Errors, each one message and an output without stream: no such array or component; an image with
- * fewer than 2 samples along an axis; a rate outside (0, 32]; NaN or infinite samples (as float32;
- * the message counts them).
+ * fewer than 2 samples along an axis; a rate outside (0, 32]; with MaskNonFinite off NaN or
+ * infinite samples (as float32; the message counts them).
  *
  * The filter requests the whole extent of its input, or the piece that is requested from it.
  *
@@ -80,7 +80,8 @@ public:
 
   ///@{
   /**
-   * Component of the array to compress. Default 0.
+   * Component of the array to compress; -1: the magnitude, the length of its vectors (of an array
+   * of one component its values). It is computed before, as floats or doubles. Default 0.
    */
   vtkSetMacro(Component, int);
   vtkGetMacro(Component, int);
@@ -89,7 +90,8 @@ public:
   ///@{
   /**
    * Whether NaN and infinite samples (as float32) are hidden, as those of hidden points are, so
-   * that an isosurface has a hole there. Default off: they are an error.
+   * that an isosurface has a hole there, as the surface of VTK's contour filters has. Default on;
+   * off: they are an error that counts them.
    */
   vtkSetMacro(MaskNonFinite, bool);
   vtkGetMacro(MaskNonFinite, bool);
@@ -145,7 +147,7 @@ private:
 
   double Rate = 8.0;
   int Component = 0;
-  bool MaskNonFinite = false;
+  bool MaskNonFinite = true;
   bool KeepLabels = false;
   double Tolerance = 0.0;
   int NumberOfThreads = 0;

@@ -4,7 +4,9 @@
 
 #include "Codec/BlockGeometry.h"
 #include "Codec/LabelDetector.h"
+#include "Codec/Magnitude.h"
 #include "Codec/RateFinder.h"
+#include "Status.h"
 
 #include "vtkCompressedVolume.h"
 #include "vtkDataArray.h"
@@ -66,7 +68,7 @@ void vtkSampleRateFinder::Start(const int dims[3])
 //------------------------------------------------------------------------------
 // Finds which blocks a slab has; false if it does not fit.
 bool vtkSampleRateFinder::TakeSlab(
-  vtkDataArray* samples, int component, vtkUnsignedCharArray* hidden)
+  vtkDataArray* samples, int component, vtkUnsignedCharArray* hidden, ChosenSamples& chosen)
 {
   Work& pass = *this->Pass;
   const vtkTypeInt64 perSlice = static_cast<vtkTypeInt64>(pass.Dimensions[0]) * pass.Dimensions[1];
@@ -80,17 +82,22 @@ bool vtkSampleRateFinder::TakeSlab(
                                 << "; all but the last need a multiple of 4, of whole slices.");
     return false;
   }
-  if (component < 0 || component >= samples->GetNumberOfComponents() ||
+  if (!HasComponent(samples, component) ||
     (hidden && hidden->GetNumberOfValues() != samples->GetNumberOfTuples()))
   {
     vtkErrorMacro("Component is " << component << " of " << samples->GetNumberOfComponents()
                                   << ", or what is hidden does not fit the samples.");
     return false;
   }
+  if (Status status = ChooseSamples(samples, component, chosen); !status)
+  {
+    vtkErrorMacro(<< "There is " << status.GetMessage() << ".");
+    return false;
+  }
   pass.First = pass.Last;
   pass.Last += BlocksAlong(slices);
   pass.Rates.Hidden = HiddenSamples::FromMask(hidden);
-  pass.Rates.Hidden.HideNonFinite = this->MaskNonFinite;
+  pass.Rates.Hidden.HideNonFinite = this->MaskNonFinite && HasNonFinite(chosen.Array);
   pass.Rates.Units = { this->Offset, this->Scale };
   pass.Rates.Tolerance = this->Tolerance;
   pass.Rates.Threads = this->NumberOfThreads;
@@ -103,11 +110,12 @@ bool vtkSampleRateFinder::AddForLabels(
   vtkDataArray* samples, int component, vtkUnsignedCharArray* hidden)
 {
   Work& pass = *this->Pass;
-  if (!this->TakeSlab(samples, component, hidden))
+  ChosenSamples chosen;
+  if (!this->TakeSlab(samples, component, hidden, chosen))
   {
     return false;
   }
-  pass.Labels.AddSlabs(pass.Dimensions, pass.First, pass.Last, samples, component);
+  pass.Labels.AddSlabs(pass.Dimensions, pass.First, pass.Last, chosen.Array, chosen.Component);
   return !pass.Labels.IsSettled();
 }
 
@@ -116,11 +124,12 @@ bool vtkSampleRateFinder::AddSlab(
   vtkDataArray* samples, int component, vtkUnsignedCharArray* hidden)
 {
   Work& pass = *this->Pass;
-  if (!this->TakeSlab(samples, component, hidden))
+  ChosenSamples chosen;
+  if (!this->TakeSlab(samples, component, hidden, chosen))
   {
     return false;
   }
-  pass.Rates.AddSlabs(pass.Dimensions, pass.First, pass.Last, samples, component);
+  pass.Rates.AddSlabs(pass.Dimensions, pass.First, pass.Last, chosen.Array, chosen.Component);
   return true;
 }
 

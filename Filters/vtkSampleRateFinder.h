@@ -24,6 +24,7 @@
 
 class vtkDataArray;
 class vtkUnsignedCharArray;
+struct ChosenSamples;
 
 class VTKPROGISOFILTERS_EXPORT vtkSampleRateFinder : public vtkObject
 {
@@ -106,12 +107,13 @@ private:
   void operator=(const vtkSampleRateFinder&) = delete;
 
   struct Work;
-  bool TakeSlab(vtkDataArray* samples, int component, vtkUnsignedCharArray* hidden);
+  bool TakeSlab(
+    vtkDataArray* samples, int component, vtkUnsignedCharArray* hidden, ChosenSamples& chosen);
 
   double Tolerance;
   double Offset = 0.0;
   double Scale = 1.0;
-  bool MaskNonFinite = false;
+  bool MaskNonFinite = true;
   int NumberOfThreads = 0;
   std::unique_ptr<Work> Pass;
 };

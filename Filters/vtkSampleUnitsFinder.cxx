@@ -3,7 +3,9 @@
 #include "vtkSampleUnitsFinder.h"
 
 #include "Codec/HiddenSamples.h"
+#include "Codec/Magnitude.h"
 #include "Codec/SampleUnits.h"
+#include "Status.h"
 
 #include "vtkDataArray.h"
 #include "vtkObjectFactory.h"
@@ -31,7 +33,7 @@ void vtkSampleUnitsFinder::Initialize()
 bool vtkSampleUnitsFinder::AddSamples(
   vtkDataArray* samples, int component, vtkUnsignedCharArray* hidden)
 {
-  if (!samples || component < 0 || component >= samples->GetNumberOfComponents())
+  if (!samples || !HasComponent(samples, component))
   {
     vtkErrorMacro("Component is " << component << ", but there are "
                                   << (samples ? samples->GetNumberOfComponents() : 0) << ".");
@@ -43,7 +45,13 @@ bool vtkSampleUnitsFinder::AddSamples(
                                << samples->GetNumberOfTuples() << " samples.");
     return false;
   }
-  this->Finder->Add(samples, component, HiddenSamples::FromMask(hidden));
+  ChosenSamples chosen;
+  if (Status status = ChooseSamples(samples, component, chosen); !status)
+  {
+    vtkErrorMacro(<< "There is " << status.GetMessage() << ".");
+    return false;
+  }
+  this->Finder->Add(chosen.Array, chosen.Component, HiddenSamples::FromMask(hidden));
   return this->IsSettled();
 }
 

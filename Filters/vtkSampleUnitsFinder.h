@@ -42,7 +42,8 @@ public:
   void Initialize();
 
   /**
-   * Takes one component of an array's samples into account; all arrays must have one type. `hidden`
+   * Takes one component of an array's samples into account, or their magnitude (-1, see
+   * vtkImageZFPCompress); all arrays must have one type. `hidden`
    * has a value other than 0 for each sample that is hidden; null: none is. Returns whether the
    * units are settled, see IsSettled(). An error if there is no such component, or `hidden` has
    * another number of values.

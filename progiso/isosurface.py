@@ -36,7 +36,7 @@ def make_isosurface(
     memory_budget: int = 0,
     detailed: bool = False,
     rate: float | None = None,
-    mask_nan: bool = False,
+    mask_nan: bool = True,
 ) -> vtkIsosurfaceVolume:
     """Make a prop that shows isosurfaces of a plain or compressed volume.
 
@@ -67,7 +67,7 @@ def make_isosurface(
         pass, which takes time itself.
     rate : float, optional
         Bits per sample for a plain image, in (0, 32]; by default as in `compress`.
-    mask_nan : bool, default: False
+    mask_nan : bool, default: True
         Whether NaN and infinite samples of a plain image are hidden, so that the surface has a hole
         there; otherwise they are an error of the mapper.
 

@@ -41,7 +41,7 @@ def contour(
     tolerance: float | None = None,
     array: str | None = None,
     component: int = 0,
-    mask_nan: bool = False,
+    mask_nan: bool = True,
     threads: int = 0,
     progress: Progress | None = None,
 ) -> vtkPolyData:
@@ -69,8 +69,8 @@ def contour(
         Point or cell array of a plain image, by default as in `compress`; the samples of cells lie
         in their centres.
     component : int, default: 0
-        Component of that array.
-    mask_nan : bool, default: False
+        Component of that array; -1: the magnitude of its vectors.
+    mask_nan : bool, default: True
         Whether NaN and infinite samples are hidden where a plain image is compressed first.
     threads : int, default: 0
         Threads that decode and contour a compressed volume; 0 for one per core.
@@ -105,8 +105,6 @@ def contour(
     values = _isovalues(isovalues)
     image = as_image(image)
     compresses = rate is not None or tolerance is not None
-    if mask_nan and not compresses and not is_compressed(image):
-        raise ValueError("mask_nan takes a rate: the contour of a plain image hides nothing")
     if compresses:
         options = CompressionOptions(
             rate=rate, tolerance=tolerance, array=array, component=component, mask_nan=mask_nan
@@ -158,10 +156,12 @@ def _plain_contour(image: vtkImageData, array: str | None, component: int) -> vt
             f"the image needs {samples.GetNumberOfPoints()}"
         )
     components = chosen.GetNumberOfComponents()
-    if not 0 <= component < components:
+    if not -1 <= component < components:
         raise ValueError(f"component is {component}, but the array has {components}")
     if components > 1:  # VTK 9.2's extractor always takes the first component
-        values = np.ascontiguousarray(vtk_to_numpy(chosen)[:, component])
+        vectors = vtk_to_numpy(chosen)
+        lengths = component < 0
+        values = np.linalg.norm(vectors, axis=1) if lengths else vectors[:, component].copy()
         name, chosen = chosen.GetName(), numpy_to_vtk(values)
         chosen.SetName(name)
     _check_shown(image)
@@ -198,7 +198,7 @@ def _check_finite(array: vtkDataArray) -> None:
     if bad:
         raise RuntimeError(
             f"cannot contour: array '{array.GetName()}' has {bad} samples that are NaN or "
-            "infinite: give mask_nan=True (--mask-nan) and a rate to leave holes there"
+            "infinite: give a rate to leave holes there (mask_nan, --mask-nan)"
         )
 
 

@@ -28,7 +28,7 @@ class CompressionOptions:
     array: str | None = None
     component: int = 0
     axes: str | None = None
-    mask_nan: bool = False
+    mask_nan: bool = True
     threads: int = 0
     progress: Progress | None = None
 

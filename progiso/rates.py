@@ -20,7 +20,7 @@ def least_rate(
     relative: bool = False,
     array: str | None = None,
     component: int = 0,
-    mask_nan: bool = False,
+    mask_nan: bool = True,
     progress: Progress | None = None,
 ) -> float:
     """Find the least rate at which no sample is off by more than a tolerance.

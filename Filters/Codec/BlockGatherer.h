@@ -55,7 +55,7 @@ public:
   /// which get values that cost zfp little.
   vtkTypeUInt64 Gather(const Block& block, float samples[BlockSamples], SampleSummary& found) const
   {
-    if (block.IsWhole() && this->IsIdentity && !this->Hidden.MayHide())
+    if (block.IsWhole() && this->IsIdentity && !this->Hidden.Flags)
     {
       const vtkTypeInt64 first = this->FirstValue(block);
       for (int i = 0; i < BlockSamples; ++i)
@@ -63,8 +63,11 @@ public:
         samples[i] = static_cast<float>(
           this->At(first, i % BlockSide, i / BlockSide % BlockSide, i / BlockSlice));
       }
-      found.AddBlock(samples);
-      return 0;
+      if (!this->Hidden.HideNonFinite || AreFinite(samples))
+      {
+        found.AddBlock(samples);
+        return 0;
+      }
     }
     return this->GatherVisible(block, samples, found);
   }
@@ -99,6 +102,20 @@ private:
 
   /// Whether float32 holds every value of the type.
   static constexpr bool IsExact = std::is_same<ValueT, float>::value || sizeof(ValueT) <= 2;
+
+  // Products with 0 add up to 0 unless one of the samples is not finite.
+  static bool AreFinite(const float samples[BlockSamples])
+  {
+    float sum[4] = { 0.0f, 0.0f, 0.0f, 0.0f };
+    for (int i = 0; i < BlockSamples; i += 4)
+    {
+      for (int lane = 0; lane < 4; ++lane)
+      {
+        sum[lane] += 0.0f * samples[i + lane];
+      }
+    }
+    return sum[0] + sum[1] + sum[2] + sum[3] == 0.0f;
+  }
 
   // Four samples at a time, as this is done for every block.
   static BlockError ErrorOfWhole(const float samples[BlockSamples], const float decoded[])

@@ -130,8 +130,8 @@ Status SampleSummary::CheckValues() const
   if (!this->IsFinite())
   {
     return Status::Error(this->NaNs, " NaN and ", this->Infinities,
-      " infinite values (as float32), which ZFP cannot compress: replace them first, or have them "
-      "hidden (MaskNonFinite; in Python mask_nan=True, in commands --mask-nan).");
+      " infinite values (as float32), which ZFP cannot compress: replace them, or have them hidden "
+      "again: Mask NaN on (MaskNonFiniteOn; in Python mask_nan=True, in commands --mask-nan).");
   }
   if (this->ShowsTinyBlocks())
   {

@@ -123,7 +123,7 @@ Status ReadIntegers(vtkFieldData* fields, Volume* volume)
   } integers[] = {
     { BlockBitsName, Volume::MinimumBlockBits, Volume::MaximumBlockBits, blockBits },
     { ScalarTypeName, 0, MaximumInt, scalarType },
-    { ComponentName, 0, MaximumInt, component },
+    { ComponentName, Volume::Magnitude, MaximumInt, component },
     { AssociationName, Volume::PointData, Volume::CellData, association },
   };
   for (const auto& integer : integers)

@@ -105,7 +105,7 @@ TEST(CompressedVolume, Rejects)
   EXPECT_FALSE(ReadWith("Association", Values<vtkIntArray>({ 1 }), "axis 0")) << "cells are fewer";
   EXPECT_FALSE(ReadWith("Association", Values<vtkIntArray>({ 2 }), "Association is 2"))
     << "association";
-  EXPECT_FALSE(ReadWith("Component", Values<vtkIntArray>({ -1 }), "Component is -1"))
+  EXPECT_FALSE(ReadWith("Component", Values<vtkIntArray>({ -2 }), "Component is -2"))
     << "component";
   EXPECT_FALSE(ReadWith("ScalarType", Values<vtkIntArray>({ VTK_STRING }), "ScalarType is 13"))
     << "type";

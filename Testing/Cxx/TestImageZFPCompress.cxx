@@ -121,6 +121,59 @@ TEST(ImageZFPCompress, ComponentsAndChoice)
 }
 
 //------------------------------------------------------------------------------
+TEST(ImageZFPCompress, Magnitude)
+{
+  const Dims dims = { 6, 7, 5 };
+  const std::vector<float> values = Samples(dims, 2);
+  const struct
+  {
+    int Type, StoredType;
+    double Scale; // of vectors (2, -3, 6), whose length is 7
+  } cases[] = { { VTK_FLOAT, VTK_FLOAT, 1.0 }, { VTK_DOUBLE, VTK_DOUBLE, 1.0 },
+    { VTK_DOUBLE, VTK_DOUBLE, 1e250 }, { VTK_DOUBLE, VTK_DOUBLE, 1e-250 },
+    { VTK_INT, VTK_DOUBLE, 1.0 }, { VTK_SHORT, VTK_FLOAT, 1.0 } };
+  for (const auto& one : cases)
+  {
+    auto vectors = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(one.Type));
+    vtkNew<vtkDoubleArray> lengths; // what is expected
+    vectors->SetName("velocity");
+    vectors->SetNumberOfComponents(3);
+    vectors->SetNumberOfTuples(Product(dims));
+    lengths->SetNumberOfTuples(Product(dims));
+    for (vtkIdType i = 0; i < Product(dims); ++i)
+    {
+      const double factor = one.Scale * std::round(values[i]);
+      vectors->SetTuple3(i, 2.0 * factor, -3.0 * factor, 6.0 * factor);
+      lengths->SetValue(i, std::abs(7.0 * factor));
+    }
+    const auto compress = [&](vtkDataArray* array, int component)
+    {
+      const auto image = FloatImage(dims);
+      image->GetPointData()->SetScalars(array);
+      vtkNew<vtkImageZFPCompress> filter;
+      filter->SetInputData(image);
+      filter->SetComponent(component);
+      filter->SetRate(32.0);
+      filter->Update();
+      return Read(filter->GetOutput());
+    };
+    const auto volume = compress(vectors, -1);
+    const auto expected = compress(lengths, 0);
+    const double tolerance = 1e-6 * expected->GetRange()[1];
+    EXPECT_NEAR(volume->GetRange()[0], expected->GetRange()[0], tolerance) << one.Scale;
+    EXPECT_NEAR(volume->GetRange()[1], expected->GetRange()[1], tolerance) << one.Scale;
+    double decoded[2], wanted[2];
+    ASSERT_TRUE(volume->FindDecodedRange(decoded) && expected->FindDecodedRange(wanted));
+    EXPECT_NEAR(decoded[1], wanted[1], 2 * tolerance) << one.Scale;
+    EXPECT_EQ(volume->GetComponent(), vtkCompressedVolume::Magnitude);
+    EXPECT_EQ(volume->GetScalarType(), one.StoredType);
+    EXPECT_EQ(volume->GetArrayName(), "velocity");
+    // of one component it is the values, with their signs
+    EXPECT_EQ(compress(lengths, -1)->GetComponent(), 0);
+  }
+}
+
+//------------------------------------------------------------------------------
 TEST(ImageZFPCompress, Output)
 {
   const Dims dims = { 6, 7, 5 };
@@ -167,6 +220,7 @@ TEST(ImageZFPCompress, Errors)
     ExpectError("Rate is", image, [=](vtkImageZFPCompress* c) { c->SetRate(rate); });
   }
   ExpectError("Component is 1", image, [](vtkImageZFPCompress* c) { c->SetComponent(1); });
+  ExpectError("Component is -2", image, [](vtkImageZFPCompress* c) { c->SetComponent(-2); });
   ExpectError("array 'pressure' to compress; the input's arrays: density", image,
     [](vtkImageZFPCompress* c)
     { c->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "pressure"); });
@@ -179,7 +233,8 @@ TEST(ImageZFPCompress, Errors)
   std::vector<float> values = Samples({ 6, 7, 5 });
   values[17] = values[209] = std::numeric_limits<float>::quiet_NaN();
   values[3] = -std::numeric_limits<float>::infinity();
-  ExpectError("2 NaN and 1 infinite", Image({ 6, 7, 5 }, FloatArray(values)), nothing);
+  const auto holes = Image({ 6, 7, 5 }, FloatArray(values));
+  ExpectError("2 NaN and 1 infinite", holes, [](vtkImageZFPCompress* c) { c->MaskNonFiniteOff(); });
 }
 
 //------------------------------------------------------------------------------

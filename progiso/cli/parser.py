@@ -126,7 +126,7 @@ def _add_samples(command: argparse.ArgumentParser) -> None:
     command.add_argument("--array", help="name of the array (default: the active scalars)")
     command.add_argument("--component", type=int, help="component of the array (default: 0)")
     command.add_argument(
-        "--mask-nan", action="store_true",
+        "--mask-nan", action=argparse.BooleanOptionalAction, default=True,
         help="leave holes where samples are NaN or infinite, which are an error otherwise",
     )  # fmt: skip
 

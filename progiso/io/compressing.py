@@ -31,7 +31,7 @@ def compress(
     array: str | None = None,
     component: int = 0,
     axes: str | None = None,
-    mask_nan: bool = False,
+    mask_nan: bool = True,
     threads: int = 0,
     progress: Progress | None = None,
 ) -> vtkImageData:
@@ -59,11 +59,11 @@ def compress(
         Point or cell array to compress; by default the active point scalars, else the first
         point array, else the active cell scalars, else the first cell array.
     component : int, default: 0
-        Component of that array.
+        Component of that array; -1: the magnitude of its vectors.
     axes : str, optional
         Order of an array's dimensions: "zyx" where slices come first; by default "xyz", or what
         the names of an xarray's dimensions say.
-    mask_nan : bool, default: False
+    mask_nan : bool, default: True
         Whether NaN and infinite samples are hidden, too; otherwise they are an error.
     threads : int, default: 0
         Threads that encode; 0 for one per core.

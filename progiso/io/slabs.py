@@ -44,7 +44,7 @@ def compress_slabs(
     name: str = "scalars",
     spacing: Sequence[float] = (1.0, 1.0, 1.0),
     origin: Sequence[float] = (0.0, 0.0, 0.0),
-    mask_nan: bool = False,
+    mask_nan: bool = True,
     units: tuple[float, float] | None = None,
     threads: int = 0,
     progress: Progress | None = None,
@@ -77,7 +77,7 @@ def compress_slabs(
         Name of the array.
     spacing, origin : sequence of 3 float
         Distance of samples along x, y and z, and the place of the first.
-    mask_nan : bool, default: False
+    mask_nan : bool, default: True
         Whether NaN and infinite samples are hidden, as in `compress`.
     units : tuple of 2 float, optional
         Offset and scale: the stream has (value - offset) / scale, as float32. So it can hold small
@@ -451,9 +451,10 @@ def _vtk_arrays(
     values, mask = plain_samples(slab)
     flat = np.ascontiguousarray(values).reshape(-1, components)
     samples = numpy_to_vtk(flat if components > 1 else flat[:, 0])
-    if mask is None or not 0 <= component < components:
+    if mask is None or not -1 <= component < components:
         return samples, None
-    hidden = np.ascontiguousarray(mask.reshape(-1, components)[:, component])
+    flags = mask.reshape(-1, components)
+    hidden = np.ascontiguousarray(flags.any(axis=1) if component < 0 else flags[:, component])
     return samples, numpy_to_vtk(hidden.view(np.uint8), deep=True)
 
 

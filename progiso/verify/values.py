@@ -112,7 +112,9 @@ def _not_finite(_settings: Settings) -> Outcome:
     values = noise(_SHAPE, 16)
     values.flat[[3, 77, 1000]] = np.nan
     values.flat[[5, 99]] = np.inf, -np.inf
-    return _refused(lambda: compressed(values), "3 NaN", "2 infinite")
+    return _refused(
+        lambda: compress(make_image(values), rate=RATE, mask_nan=False), "3 NaN", "2 infinite"
+    )
 
 
 def _no_isovalue(_settings: Settings) -> Outcome:

@@ -163,7 +163,7 @@ def test_plain_images_are_vtks():
 def test_plain_array_and_component(cells):
     values = np.stack([blobs((12, 13, 14), seed) for seed in (1, 2)], axis=-1)
     image = make_image(values, "two", cells=cells)
-    for component in (0, 1):
+    for component in (-1, 0, 1):
         exact = progiso.contour(image, 0.1, array="two", component=component)
         close = progiso.contour(image, 0.1, rate=30, array="two", component=component)
         assert exact.GetNumberOfPolys() == close.GetNumberOfPolys() > 100

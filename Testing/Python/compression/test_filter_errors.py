@@ -23,8 +23,8 @@ def with_value(value):
 
 BAD_INPUTS = {
     "flat": (plane, {}, "2"),
-    "nan": (lambda: with_value(np.nan), {}, "2 "),
-    "infinite": (lambda: with_value(np.inf), {}, "2 "),
+    "nan": (lambda: with_value(np.nan), {"MaskNonFinite": False}, "2 "),
+    "infinite": (lambda: with_value(np.inf), {"MaskNonFinite": False}, "2 "),
     "no array": (lambda: make_empty(), {}, "array"),
     "component": (lambda: make_image(noise((4, 4, 4))), {"Component": 1}, "omponent"),
     "rate 0": (lambda: make_image(noise((4, 4, 4))), {"Rate": 0}, "ate"),

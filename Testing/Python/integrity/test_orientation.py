@@ -125,8 +125,8 @@ def test_bad_samples_are_counted(value, kind, rate):
     values = blobs((9, 9, 9)).astype(kind)
     values[:2, 3, 3:5] = value
     with pytest.raises(RuntimeError, match=r"'field' has .*\b4\b.*(--mask-nan|mask_nan)"):
-        progiso.contour(make_image(values), 0.1, rate=rate)
-    surface = progiso.contour(make_image(values), 0.1, rate=16, mask_nan=True)
+        progiso.contour(make_image(values), 0.1, rate=rate, mask_nan=False)
+    surface = progiso.contour(make_image(values), 0.1, rate=16)
     assert np.isfinite(parts(surface)[0]).all()
 
 
@@ -145,7 +145,7 @@ def test_the_command_line_writes_no_nan(tmp_path):
     values = blobs((9, 9, 9))
     values[2] = np.nan
     progiso.save(make_image(values), tmp_path / "nan.vti")
-    for rest in ([], ["--rate", 8]):
+    for rest in ([], ["--rate", 8, "--no-mask-nan"]):
         done = run_progiso(tmp_path, "contour", "nan.vti", "nan.stl", "--isovalue", 0.1, *rest)
         assert done.returncode == 1 and len(done.stderr.splitlines()) == 1
         assert "81" in done.stderr and "--mask-nan" in done.stderr
