@@ -209,8 +209,14 @@ void Device::Draw(Stage stage, const SelectedId* selected)
     {
       if (selected)
       {
-        glUniform3fv(glGetUniformLocation(program, "propColor"), 1, selected->PropColor.data());
-        glUniform1i(glGetUniformLocation(program, "cellIdPart"), selected->CellIdPart);
+        const auto place = [program](const char* name)
+        { return glGetUniformLocation(program, name); };
+        glUniform3fv(place("color"), 1, selected->Color.data());
+        glUniform1i(place("idPart"), selected->IdPart);
+        glUniform1i(place("ofPoints"), selected->OfPoints ? 1 : 0);
+        glUniform1i(place("isCentred"), selected->IsCentred ? 1 : 0);
+        glUniform3iv(place("firstSample"), 1, selected->FirstSample.data());
+        glUniform3iv(place("ids"), 1, selected->Ids.data());
       }
       glBindVertexArray(this->VertexArray);
       glDrawArrays(GL_TRIANGLES, 0, 3);

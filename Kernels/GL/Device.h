@@ -28,11 +28,16 @@ struct BoundSegment
   VolumeSlice Macrocells;
 };
 
-/// What Select.frag draws: a prop's colour, or 24 bits of the id of the cell that was hit.
+/// What Select.frag draws: a colour, or 24 bits of the id of the image's cell or point that was
+/// hit.
 struct SelectedId
 {
-  std::array<float, 3> PropColor = {};
-  int CellIdPart = 0; ///< 0: the prop's colour, 1: the low bits, 2: the high bits
+  std::array<float, 3> Color = {};
+  int IdPart = 0;         ///< 0: the colour, 1: the low bits, 2: the high bits
+  bool OfPoints = false;  ///< the id is a point's
+  bool IsCentred = false; ///< samples lie in the centres of cells
+  /// The volume's first sample, among the points or cells that have ids, and their numbers.
+  std::array<int, 3> FirstSample = {}, Ids = {};
 };
 
 class Device

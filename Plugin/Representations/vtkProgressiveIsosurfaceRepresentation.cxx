@@ -106,6 +106,7 @@ int vtkProgressiveIsosurfaceRepresentation::RequestData(
     return this->Superclass::RequestData(request, inputVector, outputVector);
   }
   this->SetPiece(this->MakePiece(image));
+  this->GetIsosurfaceMapper()->SetSelectionExtent(image->GetExtent()); // of what is selected from
   vtkStreamingDemandDrivenPipeline::GetWholeExtent(
     inputVector[0]->GetInformationObject(0), this->WholeExtent);
   // skips vtkImageVolumeRepresentation's, which would cut off the ghost cells

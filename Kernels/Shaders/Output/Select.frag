@@ -1,4 +1,5 @@
-// Draws for a vtkHardwareSelector: identifiers of the prop or of the cells that were hit.
+// Draws for a vtkHardwareSelector: a colour, or identifiers of the image's cells or points that
+// were hit. A point is the corner nearest to the hit of the cell that holds it.
 
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
@@ -6,23 +7,33 @@
 #include "Surface/Hits.glsl"
 #include "Output/WindowDepth.glsl"
 
-uniform vec3 propColor;
-uniform int cellIdPart; // 0: the prop's colour is drawn; 1, 2: low and high bits of a cell's id
+uniform vec3 color;
+uniform int idPart;        // 0: the colour is drawn; 1, 2: low and high bits of an id
+uniform int ofPoints;      // 1: the id is a point's, 0: a cell's
+uniform int isCentred;     // 1: samples lie in the centres of cells, 0: on points
+uniform ivec3 firstSample; // the volume's, among the points or cells that have ids
+uniform ivec3 ids;         // points or cells with ids on each axis
 
 layout(location = 0) out vec4 fragmentColor;
 
-// 24 of the bits of VTK's number of the cell that holds the point at parameter t.
-vec3 CellColor(uint pixel, float t, int part)
+// The point or cell of the image that belongs to parameter t of a pixel's ray.
+uvec3 SelectedAt(uint pixel, float t)
 {
-  ivec3 cells = volume.Samples - 1;
-  ivec3 at = PlaceAt(LineOf(pixel), AtDepth(t)).High;
-  uvec3 cell = uvec3(clamp(at, ivec3(0), cells - 1));
-  uint row = cell.y + uint(cells.y) * cell.z;
+  Wide3 place = PlaceAt(LineOf(pixel), AtDepth(t));
+  ivec3 halves = 2 * place.High + ivec3(place.Low >> 31) + isCentred; // from the first point on
+  ivec3 at = firstSample + (halves + ofPoints >> 1);
+  return uvec3(clamp(at, ivec3(0), ids - 1));
+}
+
+// 24 of the bits of VTK's number of it.
+vec3 IdColor(uvec3 at)
+{
+  uint row = at.y + uint(ids.y) * at.z;
   uint high, low, carry;
-  umulExtended(row, uint(cells.x), high, low);
-  low = uaddCarry(low, cell.x, carry);
+  umulExtended(row, uint(ids.x), high, low);
+  low = uaddCarry(low, at.x, carry);
   high += carry;
-  uint bits = part == 1 ? low & 0xFFFFFFu : low >> 24 | (high & 0xFFFFu) << 8;
+  uint bits = idPart == 1 ? low & 0xFFFFFFu : low >> 24 | (high & 0xFFFFu) << 8;
   return vec3(bits & 255u, bits >> 8 & 255u, bits >> 16 & 255u) / 255.0;
 }
 
@@ -35,5 +46,5 @@ void main()
   }
   float t = DepthOf(pixel);
   gl_FragDepth = WindowDepth(t);
-  fragmentColor = vec4(cellIdPart == 0 ? propColor : CellColor(pixel, t, cellIdPart), 1.0);
+  fragmentColor = vec4(idPart == 0 ? color : IdColor(SelectedAt(pixel, t)), 1.0);
 }
