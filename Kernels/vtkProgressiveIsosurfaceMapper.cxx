@@ -57,6 +57,14 @@ static_assert(glsl::MAX_SPECULATION == 64, "SpeculationLimit follows the shaders
 namespace
 {
 constexpr double Unlimited = std::numeric_limits<double>::infinity(); // milliseconds
+
+// The failure that was told last: the same one is not told at every render.
+struct ToldFailure
+{
+  std::string Message;
+  vtkMTimeType Cause = 0; // when settings and input last changed
+  vtkRenderer* Renderer = nullptr;
+};
 }
 
 // What a mapper keeps from one render to the next; the mapper's methods join the parts.
@@ -67,11 +75,15 @@ struct vtkProgressiveIsosurfaceMapper::Internals
   ProgressivePipeline Pipeline;
   vtkTimeStamp HandOverTime; ///< of the inputs to the pipeline
   ViewState View;
+  vtkRenderer* Renderer = nullptr; ///< of the present render
   RefinementTimer Timer;
   std::vector<double> JudgedIsovalues; ///< that WarnOfDoubts() has seen
   vtkMTimeType JudgedTime = 0;         ///< the input's then
-  double InputMilliseconds = 0.0;      ///< that the inputs took when they last changed
-  double TotalMilliseconds = 0.0;      ///< of the present image
+  ToldFailure Told;
+  vtkTypeInt64 TightBudget = 0;   ///< the last one that was too small, and of which
+  vtkMTimeType TightTime = 0;     ///< input that has been told
+  double InputMilliseconds = 0.0; ///< that the inputs took when they last changed
+  double TotalMilliseconds = 0.0; ///< of the present image
 };
 
 vtkStandardNewMacro(vtkProgressiveIsosurfaceMapper);
@@ -133,6 +145,12 @@ void vtkProgressiveIsosurfaceMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ColorComponent: " << this->ColorComponent << "\n";
   os << indent << "ColorLookupTable: " << this->ColorLookupTable << "\n";
   os << indent << "LitLikeMeshes: " << this->LitLikeMeshes << "\n";
+  os << indent << "SelectionExtent:";
+  for (const int bound : this->SelectionExtent)
+  {
+    os << " " << bound;
+  }
+  os << "\n" << indent << "CompositeIndex: " << this->CompositeIndex << "\n";
   os << indent << "SpeculationLimit: " << this->SpeculationLimit << "\n";
   os << indent << "MemoryBudget: " << this->MemoryBudget << "\n";
   os << indent << "DecodeWholeVolume: " << this->DecodeWholeVolume << "\n";
@@ -200,6 +218,7 @@ void vtkProgressiveIsosurfaceMapper::Render(vtkRenderer* renderer, vtkVolume* vo
 {
   const vtkSmartPointer<vtkProgressiveIsosurfaceMapper> alive = this; // whatever observers do
   const Stopwatch stopwatch;
+  this->Impl->Renderer = renderer;
   if (!this->CanRender(renderer, volume) || !this->UpdateInputs())
   {
     return;
@@ -222,6 +241,10 @@ void vtkProgressiveIsosurfaceMapper::Render(vtkRenderer* renderer, vtkVolume* vo
   if (!this->Refine(window))
   {
     return;
+  }
+  if (this->Impl->Told.Renderer == renderer)
+  {
+    this->Impl->Told = ToldFailure();
   }
   this->Statistics->SetSource(
     [this, detailed = this->DetailedStatistics]() { return this->CollectFigures(detailed); });
@@ -254,14 +277,12 @@ bool vtkProgressiveIsosurfaceMapper::CanRender(vtkRenderer* renderer, vtkVolume*
 {
   if (!vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow()))
   {
-    vtkErrorMacro("needs an OpenGL render window");
-    return false;
+    return this->Fails("needs an OpenGL render window");
   }
   if (IsPeeled(volume))
   {
-    vtkErrorMacro("cannot be peeled with other volumes: switch vtkRenderer's "
-                  "UseDepthPeelingForVolumes off, or use a vtkIsosurfaceVolume");
-    return false;
+    return this->Fails("cannot be peeled with other volumes: switch vtkRenderer's "
+                       "UseDepthPeelingForVolumes off, or use a vtkIsosurfaceVolume");
   }
   return this->Succeeds(CheckLimits(renderer, volume->GetProperty(), this->ClippingPlanes));
 }
@@ -270,15 +291,13 @@ bool vtkProgressiveIsosurfaceMapper::UpdateInputs()
 {
   if (!this->GetInputAlgorithm())
   {
-    vtkErrorMacro("has no input: connect a vtkImageData, plain or compressed");
-    return false;
+    return this->Fails("has no input: connect a vtkImageData, plain or compressed");
   }
   this->GetInputAlgorithm()->Update();
   vtkImageData* image = vtkImageData::SafeDownCast(this->GetInput());
   if (!image)
   {
-    vtkErrorMacro("needs a vtkImageData as input");
-    return false;
+    return this->Fails("needs a vtkImageData as input");
   }
   return this->Succeeds(this->Impl->Inputs.UpdateValues(this->MakeArrayChoice(), image)) &&
     this->UpdateColors(image);
@@ -368,6 +387,20 @@ void vtkProgressiveIsosurfaceMapper::WarnOfDoubts(vtkVolumeProperty* property)
   }
 }
 
+// Says that a memory budget could not be kept, once for it and an input.
+void vtkProgressiveIsosurfaceMapper::WarnOfTightBudget()
+{
+  Internals& impl = *this->Impl;
+  const std::string excess = impl.Pipeline.GetMemoryPlan().DescribeExcess();
+  const vtkMTimeType time = impl.Inputs.GetTime();
+  if (!excess.empty() && (impl.TightBudget != this->MemoryBudget || impl.TightTime != time))
+  {
+    impl.TightBudget = this->MemoryBudget;
+    impl.TightTime = time;
+    vtkWarningMacro(<< excess);
+  }
+}
+
 bool vtkProgressiveIsosurfaceMapper::UpdateScene(vtkRenderer* renderer, vtkVolume* volume)
 {
   Internals& impl = *this->Impl;
@@ -381,15 +414,13 @@ bool vtkProgressiveIsosurfaceMapper::UpdateScene(vtkRenderer* renderer, vtkVolum
     TranslateScene(renderer, volume, this, values.GetImage(), values.GetVolume(), viewport);
   if (!HasRays(scene.View))
   {
-    vtkErrorMacro("cannot show its input: the image's spacing, origin and directions, the "
-                  "volume's matrix and the camera must be finite, and none of them flat");
-    return false;
+    return this->Fails("cannot show its input: the image's spacing, origin and directions, the "
+                       "volume's matrix and the camera must be finite, and none of them flat");
   }
   if (HasTooLongWays(scene.View))
   {
-    vtkErrorMacro("cannot show its input: rays would cross 2^29 voxels and more on their way "
-                  "through it; resample the image to spacings that differ less");
-    return false;
+    return this->Fails("cannot show its input: rays would cross 2^29 voxels and more on their way "
+                       "through it; resample the image to spacings that differ less");
   }
   if (this->LitLikeMeshes && scene.Look.LitSides == glsl::TWO_SIDED)
   {
@@ -424,10 +455,13 @@ bool vtkProgressiveIsosurfaceMapper::UpdatePipeline(bool newImage, bool mayWait)
   settings.SpeculationLimit = this->SpeculationLimit;
   settings.DecodeWholeVolume = this->DecodeWholeVolume;
   settings.Detailed = this->DetailedStatistics;
-  if (!this->Continues(impl.Pipeline.SetScene(impl.View.GetScene(), settings, newImage)))
+  const Status made = impl.Pipeline.SetScene(impl.View.GetScene(), settings, newImage);
+  if (!made)
   {
-    return false;
+    // what follows from the volume's size alone costs nothing at the next render
+    return impl.Pipeline.GetStatus() ? this->Succeeds(made) : this->Continues(made);
   }
+  this->WarnOfTightBudget();
   const bool empty = IsEmpty(impl.View.GetScene().View);
   if (!impl.Pipeline.IsStarted() &&
     (!mayWait || empty || impl.Pipeline.AwaitPrograms(1e3 * this->TimeAllowance)))
@@ -505,8 +539,16 @@ void vtkProgressiveIsosurfaceMapper::Select(vtkHardwareSelector* selector)
   }
   if (this->Continues(impl.Pipeline.GetStatus()))
   {
+    SelectedImage image;
+    image.CompositeIndex = this->CompositeIndex;
+    const int* extent = this->SelectionExtent;
+    if (extent[0] > extent[1])
+    {
+      extent = vtkImageData::SafeDownCast(this->GetInput())->GetExtent();
+    }
+    std::copy(extent, extent + 6, image.Extent);
     DrawSelection(selector, impl.Window.Get()->GetState(), impl.View.GetScene().View,
-      impl.Inputs.GetValues().GetVolume(), impl.Pipeline);
+      impl.Inputs.GetValues().GetVolume(), image, impl.Pipeline);
   }
 }
 
@@ -533,11 +575,21 @@ ImageStatistics vtkProgressiveIsosurfaceMapper::CollectFigures(bool detailed)
 //------------------------------------------------------------------------------
 bool vtkProgressiveIsosurfaceMapper::Succeeds(const Status& status)
 {
-  if (!status)
+  return status.IsOk() || this->Fails(status.GetMessage());
+}
+
+// Tells a failure unless it is that of the last render and nothing has changed since; false.
+bool vtkProgressiveIsosurfaceMapper::Fails(const std::string& message)
+{
+  Internals& impl = *this->Impl;
+  const vtkMTimeType cause = std::max(this->GetMTime(), impl.Inputs.GetTime());
+  const bool again = message == impl.Told.Message && cause == impl.Told.Cause;
+  impl.Told = { message, cause, impl.Renderer };
+  if (!again)
   {
-    vtkErrorMacro(<< status.GetMessage());
+    vtkErrorMacro(<< message);
   }
-  return status.IsOk();
+  return false;
 }
 
 // An error of the pipeline may leave anything behind: the next render begins with nothing.

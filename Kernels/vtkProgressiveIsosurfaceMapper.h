@@ -32,9 +32,9 @@
  * from there. The complete image does not depend on the speculation, the memory budget or the
  * number of passes per render.
  *
- * Several threads may render, each its own windows. If the GPU fails, for example because it runs
- * out of memory, the mapper reports an error, draws nothing, and starts from scratch at the next
- * render.
+ * Several threads may render, each its own windows. What cannot be drawn is told once, as an error,
+ * and not tried again before input or settings change. If the GPU fails, for example because it
+ * runs out of memory, which may end any time, the mapper starts from scratch at the next render.
  *
  * Needs OpenGL 4.3. Add it to a scene with a vtkIsosurfaceVolume, which draws in the opaque pass; a
  * plain vtkVolume works too, but is drawn after translucent geometry.
@@ -51,6 +51,7 @@
 #include "vtkVolumeMapper.h"
 
 #include <memory> // for the implementation
+#include <string> // for messages
 
 class Status;
 class vtkAlgorithmOutput;
@@ -93,16 +94,17 @@ public:
 
   ///@{
   /**
-   * Component of plain input that is rendered. Default 0.
+   * Component of plain input that is rendered; -1: the magnitude, the length of its vectors (of an
+   * array of one component its values). Default 0.
    */
-  vtkSetClampMacro(Component, int, 0, VTK_INT_MAX);
+  vtkSetClampMacro(Component, int, -1, VTK_INT_MAX);
   vtkGetMacro(Component, int);
   ///@}
 
   ///@{
   /**
    * Whether NaN and infinite samples of plain input are hidden, so that the surface has holes there
-   * (see vtkImageZFPCompress). Default off: they are an error.
+   * (see vtkImageZFPCompress). Default on; off: they are an error.
    */
   vtkSetMacro(MaskNonFinite, bool);
   vtkGetMacro(MaskNonFinite, bool);
@@ -130,9 +132,11 @@ public:
 
   ///@{
   /**
-   * Component of the volume that gives the colours. Default 0.
+   * Component of the volume that gives the colours; -1: its magnitude. Whoever takes it from a
+   * vtkScalarsToColors sets -1 where its vector mode is MAGNITUDE. The table maps plain values: its
+   * own vector mode and component do not count. Default 0.
    */
-  vtkSetClampMacro(ColorComponent, int, 0, VTK_INT_MAX);
+  vtkSetClampMacro(ColorComponent, int, -1, VTK_INT_MAX);
   vtkGetMacro(ColorComponent, int);
   ///@}
 
@@ -160,6 +164,25 @@ public:
 
   ///@{
   /**
+   * The image whose cells and points a vtkHardwareSelector names where the input is only a part of
+   * it, or has other ghost cells: its extent. Default empty: the input's. A point is named by the
+   * corner nearest to the hit of the cell that holds it.
+   */
+  vtkSetVector6Macro(SelectionExtent, int);
+  vtkGetVector6Macro(SelectionExtent, int);
+  ///@}
+
+  ///@{
+  /**
+   * Flat index of the block of a composite data set that the input is, for a vtkHardwareSelector. 0
+   * (default): it is none.
+   */
+  vtkSetMacro(CompositeIndex, unsigned int);
+  vtkGetMacro(CompositeIndex, unsigned int);
+  ///@}
+
+  ///@{
+  /**
    * Maximum number of blocks that a ray may test in one pass, 1 (no speculation) … 64. Default 64.
    */
   vtkSetClampMacro(SpeculationLimit, int, 1, 64);
@@ -171,8 +194,8 @@ public:
    * Maximum GPU memory in bytes that the mapper holds beside the compressed stream, for any view,
    * isovalue and image size; 0 (default): automatic, a quarter of the GPU's memory, but at most
    * 1 GiB for decoded blocks. If a pass needs more, fewer rays take part in it; the complete image
-   * is the same. A budget too small to work at all is an error, whose message names the least that
-   * suffices. GetStatistics()->GetMemoryBudget() returns the budget in force.
+   * is the same. Of a budget too small to work at all a warning names the least that does, which is
+   * taken instead. GetStatistics()->GetMemoryBudget() returns the budget in force.
    */
   vtkSetClampMacro(MemoryBudget, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
   vtkGetMacro(MemoryBudget, vtkTypeInt64);
@@ -318,12 +341,14 @@ protected:
 
   double Rate = 8.0;
   int Component = 0;
-  bool MaskNonFinite = false;
+  bool MaskNonFinite = true;
   bool KeepLabels = true;
   char* ColorArrayName = nullptr;
   int ColorComponent = 0;
   vtkScalarsToColors* ColorLookupTable = nullptr;
   bool LitLikeMeshes = false;
+  int SelectionExtent[6] = { 0, -1, 0, -1, 0, -1 };
+  unsigned int CompositeIndex = 0;
   int SpeculationLimit = 64;
   vtkTypeInt64 MemoryBudget = 0;
   bool DecodeWholeVolume = true;
@@ -340,6 +365,7 @@ private:
   bool CanRender(vtkRenderer* renderer, vtkVolume* volume);
   ArrayChoice MakeArrayChoice();
   void WarnOfDoubts(vtkVolumeProperty* property);
+  void WarnOfTightBudget();
   bool UpdateInputs();
   bool UpdateColors(vtkImageData* image);
   bool BindWindow(vtkOpenGLRenderWindow* window);
@@ -350,6 +376,7 @@ private:
   bool MayRefineLater(vtkOpenGLRenderWindow* window);
   void Select(vtkHardwareSelector* selector);
   bool Succeeds(const Status& status);
+  bool Fails(const std::string& message);
   bool Continues(const Status& pipelineStatus);
   void ReleaseGraphics(vtkWindow* window);
   ImageStatistics CollectFigures(bool detailed);

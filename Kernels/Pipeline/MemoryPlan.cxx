@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iomanip>
+#include <sstream>
 
 namespace
 {
@@ -91,14 +93,15 @@ MemoryPlan PlanMemory(
   const DeviceLimits& limits, const PipelineSettings& settings, const SceneNeeds& scene)
 {
   MemoryPlan plan;
-  plan.Budget = ChooseBudget(limits, settings, scene);
   const SceneNeeds whole = WithWholeVolume(scene);
   const std::int64_t wholeBytes = BytesBesideStream(whole);
   const std::int64_t leastCached = BytesBesideStream(WithCache(scene, LeastSlots(scene)));
-  const bool wholeFits =
-    wholeBytes <= plan.Budget && BytesPerSlot(whole) * whole.Slots <= limits.LargestBuffer;
-  plan.Cached = !(settings.DecodeWholeVolume && wholeFits);
-  plan.LeastBudget = settings.DecodeWholeVolume ? std::min(leastCached, wholeBytes) : leastCached;
+  const bool mayBeWhole =
+    settings.DecodeWholeVolume && BytesPerSlot(whole) * whole.Slots <= limits.LargestBuffer;
+  plan.LeastBudget = mayBeWhole ? std::min(leastCached, wholeBytes) : leastCached;
+  plan.Wanted = ChooseBudget(limits, settings, scene);
+  plan.Budget = std::max(plan.Wanted, plan.LeastBudget);
+  plan.Cached = !(mayBeWhole && wholeBytes <= plan.Budget);
   plan.MaximumSlots = LimitSlots(limits, plan.Budget, scene);
   return plan;
 }
@@ -130,13 +133,20 @@ Status CheckSizes(const DeviceLimits& limits, const SceneNeeds& scene)
   return Status();
 }
 
-Status CheckBudget(const MemoryPlan& plan)
+std::string MemoryPlan::DescribeExcess() const
 {
-  return !plan.Cached || plan.MaximumSlots > 0
-    ? Status()
-    : Status::Error("the memory budget of ", plan.Budget,
-        " bytes is too small: this volume at this image size needs at least ", plan.LeastBudget,
-        " bytes beside the compressed stream");
+  if (this->Budget == this->Wanted)
+  {
+    return "";
+  }
+  const double mebibyte = 1 << 20;
+  std::ostringstream words;
+  words << std::fixed << std::setprecision(1) << "the memory budget of "
+        << static_cast<double>(this->Wanted) / mebibyte
+        << " MiB is too small: this volume at this image size takes "
+        << static_cast<double>(this->Budget) / mebibyte << " MiB (" << this->Budget
+        << " bytes) beside the compressed stream, the least that works";
+  return words.str();
 }
 
 SceneNeeds WithCache(const SceneNeeds& scene, std::int64_t slots)

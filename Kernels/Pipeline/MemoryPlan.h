@@ -11,19 +11,25 @@
 #include "Status.h"
 
 #include <cstdint>
+#include <string>
 
 struct MemoryPlan
 {
-  std::int64_t Budget = 0;      ///< bytes in force, beside the compressed stream
+  std::int64_t Wanted = 0;      ///< bytes that are asked for, beside the compressed stream
+  std::int64_t Budget = 0;      ///< bytes in force: the same, or the least that works
   std::int64_t LeastBudget = 0; ///< bytes that this scene needs at least
   bool Cached = true;           ///< false: the whole volume is decoded, once
-  /// Blocks that a cache may hold; 0: the budget has no room for the smallest one.
+  /// Blocks that a cache may hold; 0: one buffer has no room for the smallest one.
   std::int64_t MaximumSlots = 0;
+
+  /// Says that more is taken than was asked for; empty if that is not so.
+  std::string DescribeExcess() const;
 };
 
-/// Chooses the budget, decides between a cache and the decoded volume, and limits the cache.
-/// The scene's slots and map pages do not count. Its pixels are to be all of the viewport, whatever
-/// part of it has rays: then nothing changes when a user comes nearer.
+/// Chooses the budget, at least what this scene needs, decides between a cache and the decoded
+/// volume, and limits the cache. The scene's slots and map pages do not count. Its pixels are to be
+/// all of the viewport, whatever part of it has rays: then nothing changes when a user comes
+/// nearer.
 MemoryPlan PlanMemory(
   const DeviceLimits& limits, const PipelineSettings& settings, const SceneNeeds& scene);
 
@@ -36,8 +42,6 @@ SceneNeeds WithWholeVolume(const SceneNeeds& scene);
 /// An error where the volume is larger than numbers of blocks or one buffer of the GPU can be, or
 /// one buffer cannot hold the smallest cache: no budget helps.
 Status CheckSizes(const DeviceLimits& limits, const SceneNeeds& scene);
-/// An error where the plan's budget is too small.
-Status CheckBudget(const MemoryPlan& plan);
 
 /// The scene with addresses reserved for a cache of any size, where the GPU can do that and the
 /// volume needs more than a small one.

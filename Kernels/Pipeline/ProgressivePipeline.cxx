@@ -487,10 +487,10 @@ Status ProgressivePipeline::MakeRoom(bool newImage)
   this->Needs = WithReservation(limits, this->Needs);
   const SceneNeeds most = WithPixels(this->Needs, this->ViewportPixels);
   this->Plan = PlanMemory(limits, this->Settings, most);
-  const Status sizes = CheckSizes(limits, WithCache(most, 0));
-  if (const Status checked = sizes ? CheckBudget(this->Plan) : sizes; !checked)
+  if (Status sizes = CheckSizes(limits, WithCache(most, 0)); !sizes)
   {
-    return this->Gpu->Gl.Fail(checked);
+    this->Started = false;
+    return sizes;
   }
   this->Needs.Pixels = RoomForImage(this->Needs.Pixels, this->ImagePixels, this->ViewportPixels,
     newImage ? this->SinceImage.GetMilliseconds() : 0.0);

@@ -52,7 +52,8 @@ public:
   /// Forgets all decoded blocks before the next scene.
   void EmptyCache() { this->CacheToEmpty = true; }
   /// Makes ready what the scene needs: the volume's macrocells, the cache, the image's buffers. An
-  /// error where the budget or the GPU has no room. `newImage`: the last image is not to go on.
+  /// error where the GPU has no room; GetStatus() has it, too, unless it follows from the volume's
+  /// size alone. `newImage`: the last image is not to go on.
   /// For an image without pixels nothing is made, and no stage runs.
   Status SetScene(const PipelineScene& scene, const PipelineSettings& settings, bool newImage);
 

@@ -126,8 +126,22 @@ TEST(MemoryPlan, LeastBudgetIsJustEnough)
   EXPECT_EQ(PlanMemory(Limits(), WithBudget(least), scene).MaximumSlots, 2048);
   const MemoryPlan tooSmall = PlanMemory(Limits(), WithBudget(least - 1), scene);
   EXPECT_TRUE(tooSmall.Cached);
-  EXPECT_EQ(tooSmall.MaximumSlots, 0);
   EXPECT_EQ(tooSmall.LeastBudget, least);
+  EXPECT_EQ(tooSmall.Wanted, least - 1);
+  EXPECT_EQ(tooSmall.Budget, least);
+  EXPECT_EQ(tooSmall.MaximumSlots, 2048);
+}
+
+TEST(MemoryPlan, TellsThatTheLeastIsTaken)
+{
+  const SceneNeeds scene = Scene(1024);
+  const MemoryPlan plan = PlanMemory(Limits(), WithBudget(3 * MiB / 2), scene);
+  const std::string words = plan.DescribeExcess();
+  EXPECT_NE(words.find("1.5 MiB"), std::string::npos) << words;
+  EXPECT_NE(words.find(std::to_string(plan.LeastBudget) + " bytes"), std::string::npos) << words;
+  EXPECT_EQ(PlanMemory(Limits(), WithBudget(GiB), scene).DescribeExcess(), "");
+  // a GPU with hardly any memory
+  EXPECT_NE(PlanMemory(Limits(4 * MiB), WithBudget(0), scene).DescribeExcess(), "");
 }
 
 TEST(MemoryPlan, LeastBudgetOfASmallVolumeIsThatOfItsBlocks)
@@ -140,7 +154,7 @@ TEST(MemoryPlan, LeastBudgetOfASmallVolumeIsThatOfItsBlocks)
   EXPECT_FALSE(PlanMemory(Limits(), WithBudget(whole), scene).Cached);
   EXPECT_EQ(PlanMemory(Limits(), WithBudget(GiB, false), scene).LeastBudget, cached);
   EXPECT_EQ(PlanMemory(Limits(), WithBudget(cached, false), scene).MaximumSlots, 512);
-  EXPECT_EQ(PlanMemory(Limits(), WithBudget(cached - 1, false), scene).MaximumSlots, 0);
+  EXPECT_EQ(PlanMemory(Limits(), WithBudget(cached - 1, false), scene).MaximumSlots, 512);
 }
 
 TEST(MemoryPlan, MapPagesFollowTheSlots)
@@ -316,7 +330,7 @@ TEST(MemoryPlan, ABufferTooSmallForTheCacheIsNoSmallBudget)
   DeviceLimits limits = Limits();
   limits.LargestBuffer = 2048 * 256;
   EXPECT_TRUE(CheckSizes(limits, scene));
-  EXPECT_TRUE(CheckBudget(PlanMemory(limits, WithBudget(GiB, false), scene)));
+  EXPECT_EQ(PlanMemory(limits, WithBudget(GiB, false), scene).MaximumSlots, 2048);
   --limits.LargestBuffer;
   const Status status = CheckSizes(limits, scene);
   EXPECT_FALSE(status);
@@ -325,15 +339,14 @@ TEST(MemoryPlan, ABufferTooSmallForTheCacheIsNoSmallBudget)
     "raise LargestBuffer, or use another GPU");
 }
 
-TEST(MemoryPlan, NoBudgetMakesSlotsNegative)
+TEST(MemoryPlan, TheSmallestBudgetsAreRaised)
 {
   const SceneNeeds scene = Scene(1024);
   for (const std::int64_t budget : { std::int64_t(1), BytesWithCache(scene, 0) - 1 })
   {
     const MemoryPlan plan = PlanMemory(Limits(), WithBudget(budget), scene);
-    EXPECT_EQ(plan.MaximumSlots, 0);
+    EXPECT_EQ(plan.MaximumSlots, 2048);
     EXPECT_TRUE(plan.Cached);
-    EXPECT_FALSE(CheckBudget(plan));
   }
 }
 

@@ -129,13 +129,20 @@ Status CompressedInput::Update(const Choice& choice)
   const Key key = { choice.Image, choice.Image->GetMTime(), array, array ? array->GetMTime() : 0,
     array ? choice.Rate : 0.0, array ? choice.Component : 0, array && choice.MaskNonFinite,
     array && choice.KeepLabels };
-  if (this->Image && key == this->Source)
+  if (key != this->Source)
   {
-    return Status();
+    this->Release();
+    this->Result = this->Read(choice);
+    this->Source = key;
+    this->Time.Modified();
   }
-  this->Release();
+  return this->Result;
+}
+
+Status CompressedInput::Read(const Choice& choice)
+{
   vtkSmartPointer<vtkImageData> image = choice.Image;
-  if (array)
+  if (choice.Array)
   {
     if (Status status = Compress(choice, image); !status)
     {
@@ -147,8 +154,6 @@ Status CompressedInput::Update(const Choice& choice)
     return Status::Error(this->Volume->GetErrorMessage());
   }
   this->Image = image;
-  this->Source = key;
-  this->Time.Modified();
   return Status();
 }
 

@@ -29,7 +29,7 @@ public:
     bool CellData = false;         ///< the array is of cells
     int Component = 0;
     double Rate = 8.0;
-    bool MaskNonFinite = false;
+    bool MaskNonFinite = true;
     bool KeepLabels = false;
   };
 
@@ -38,7 +38,8 @@ public:
   CompressedInput(const CompressedInput&) = delete;
   void operator=(const CompressedInput&) = delete;
 
-  /// Updates the compressed volume if the image or the choice has changed.
+  /// Updates the compressed volume if the image or the choice has changed. What failed is not tried
+  /// again before: the same error comes back.
   Status Update(const Choice& choice);
   /// Drops the image.
   void Release();
@@ -46,10 +47,12 @@ public:
   /// The compressed image, or null.
   vtkImageData* GetImage() const;
   vtkCompressedVolume* GetVolume() const { return this->Volume; }
-  /// When the image last changed.
+  /// When the image last changed, or an attempt failed.
   vtkMTimeType GetTime() const { return this->Time; }
 
 private:
+  Status Read(const Choice& choice);
+
   /// Image and array with their times, rate, component, mask and labels: a change of any of them
   /// changes the volume.
   using Key =
@@ -57,7 +60,8 @@ private:
 
   vtkSmartPointer<vtkImageData> Image;
   vtkNew<vtkCompressedVolume> Volume;
-  Key Source;
+  Key Source;    ///< of the last attempt
+  Status Result; ///< likewise
   vtkTimeStamp Time;
 };
 

@@ -23,7 +23,7 @@ struct ArrayChoice
   const char* ColorArrayName = nullptr;
   int ColorComponent = 0;
   double Rate = 8.0;
-  bool MaskNonFinite = false;
+  bool MaskNonFinite = true;
   bool KeepLabels = false;
 };
 

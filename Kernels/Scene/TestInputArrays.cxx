@@ -110,11 +110,36 @@ TEST_F(InputArraysOfImage, TellsWhyAnArrayCannotBeCompressed)
   this->AddPoints("points");
   this->Image->GetPointData()->GetArray("points")->SetTuple1(
     0, std::numeric_limits<double>::quiet_NaN());
+  this->Choice.MaskNonFinite = false;
   const Status status = this->Inputs.UpdateValues(this->Choice, this->Image);
   ExpectError(status, "finite");
   EXPECT_EQ(status.GetMessage().find("ERROR"), std::string::npos) << status.GetMessage();
   EXPECT_EQ(this->Inputs.GetValues().GetImage(), nullptr);
   this->Choice.MaskNonFinite = true;
+  this->ExpectValues("points", vtkCompressedVolume::PointData);
+}
+
+TEST_F(InputArraysOfImage, TriesAgainWhatFailedOnlyAfterAChange)
+{
+  this->AddPoints("points");
+  this->Choice.Component = 1;
+  const auto fails = [this]() { return this->Inputs.UpdateValues(this->Choice, this->Image); };
+  ExpectError(fails(), "Component is 1");
+  const vtkMTimeType time = this->Inputs.GetTime();
+  ExpectError(fails(), "Component is 1");
+  EXPECT_EQ(this->Inputs.GetTime(), time);
+  this->Choice.Component = 2;
+  ExpectError(fails(), "Component is 2");
+  EXPECT_GT(this->Inputs.GetTime(), time);
+  this->Choice.Component = 0;
+  this->ExpectValues("points", vtkCompressedVolume::PointData);
+  vtkDataArray* array = this->Image->GetPointData()->GetArray("points");
+  this->Choice.MaskNonFinite = false;
+  array->SetTuple1(0, std::numeric_limits<double>::infinity());
+  array->Modified();
+  ExpectError(fails(), "1 infinite");
+  array->SetTuple1(0, 5.0);
+  array->Modified();
   this->ExpectValues("points", vtkCompressedVolume::PointData);
 }
 

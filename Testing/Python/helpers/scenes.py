@@ -130,12 +130,12 @@ class Scene:
 def least_budget(image, isovalue, camera, size=(160, 120), **settings):
     """Return the least memory budget of a lit scene.
 
-    The error says it when there is only one byte.
+    The warning says it when there is only one byte.
     """
     scene = Scene(image, isovalue, camera, size, lit=True, MemoryBudget=1, **settings)
     with vtk_messages() as messages:
         scene.window.Render()
-    return int(re.search(r"at least (\d+) bytes", "".join(messages))[1])
+    return int(re.search(r"\((\d+) bytes\)", "".join(messages))[1])
 
 
 def orbit(volume, i, n, view_angle=50.0, distance=1.5):

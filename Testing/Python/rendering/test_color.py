@@ -151,3 +151,43 @@ def test_errors():
         with vtk_messages() as messages:
             scene.window.Render()
         assert len(messages) == 1 and problem in messages[0]
+
+
+# --- magnitudes -----------------------------------------------------------------------------------
+
+
+def with_vectors(image, cells=False):
+    """Add "flow", vectors whose length is "speed"."""
+    data = image.GetCellData() if cells else image.GetPointData()
+    z, y, x = np.meshgrid(*[np.arange(N) - CENTER] * 3, indexing="ij")
+    flow = np.stack([x, 0.5 * y, np.sin(z)], axis=-1).reshape(-1, 3).astype(np.float32)
+    for name, values in (("flow", flow), ("speed", np.sqrt((flow.astype(float) ** 2).sum(axis=1)))):
+        array = numpy_to_vtk(values.astype(np.float32), deep=True)
+        array.SetName(name)
+        data.AddArray(array)
+    return image
+
+
+@pytest.mark.parametrize("cells", [False, True])
+def test_magnitudes_give_colours(cells):
+    image = with_vectors(ball(cells), cells)
+    flow, speed, component = (
+        picture_of(scene_of(image, ColorArrayName=name, ColorComponent=i))
+        for name, i in (("flow", -1), ("speed", 0), ("flow", 0))
+    )
+    assert np.array_equal(flow, speed) and (flow != component).mean() > 0.1
+
+
+def test_isosurfaces_of_magnitudes():
+    image = with_vectors(ball())
+    image.GetPointData().SetActiveScalars("flow")
+    scene = Scene(image, 9.0, CAMERA, SIZE, Rate=16.0, Component=-1)
+    image.GetPointData().SetActiveScalars("speed")
+    other = Scene(image, 9.0, CAMERA, SIZE, Rate=16.0)
+    expected = other.depth()
+    image.GetPointData().SetActiveScalars("flow")
+    depth = scene.depth()
+    assert np.isfinite(depth).sum() > 1000 and depth.tobytes() == expected.tobytes()
+    compressed = progiso.compress(image, rate=16, array="flow", component=-1)
+    assert progiso.describe(compressed)["component"] == -1
+    assert Scene(compressed, 9.0, CAMERA, SIZE).depth().tobytes() == expected.tobytes()
