@@ -11,7 +11,7 @@ list(APPEND sources
   "${CMAKE_CURRENT_LIST_DIR}/pqIsosurfaceStatisticsWidget.h")
 
 # A distribution's ParaView names these libraries as dependencies of its window; the widgets need none of them.
-foreach (library IN ITEMS Boost::boost LibXml2::LibXml2 NetCDF::NetCDF Qt5::OpenGL hdf5::hdf5 hdf5::hdf5_hl)
+foreach (library IN ITEMS Boost::boost LibXml2::LibXml2 NetCDF::NetCDF ${_qt}::OpenGL hdf5::hdf5 hdf5::hdf5_hl)
   if (NOT TARGET "${library}")
     add_library("${library}" INTERFACE IMPORTED GLOBAL)
   endif ()

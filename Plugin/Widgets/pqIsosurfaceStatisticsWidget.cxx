@@ -67,7 +67,7 @@ pqIsosurfaceStatisticsWidget::pqIsosurfaceStatisticsWidget(
   this->makeTable();
 
   auto* form = new QFormLayout(this);
-  form->setMargin(0);
+  form->setContentsMargins(0, 0, 0, 0);
   form->addRow(tr("Completed"), this->Completed);
   form->addRow(tr("Memory"), this->Memory);
   form->addRow(tr("Image"), this->Image);

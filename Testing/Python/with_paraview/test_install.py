@@ -9,8 +9,6 @@ from helpers.programs import under_x
 
 pytestmark = pytest.mark.paraview
 
-PLUGINS = "lib/paraview-5.11/plugins"
-
 
 @pytest.fixture(scope="module")
 def prefix(build, tmp_path_factory):
@@ -59,6 +57,7 @@ def test_find_package(prefix, build, tmp_path):
 
 def test_plugin_path(prefix, tmp_path):
     """ParaView finds the plugin by PV_PLUGIN_PATH, without being told to load it."""
+    (plugins,) = prefix.glob("lib/paraview-*/plugins")
     script = tmp_path / "find.py"
     script.write_text(
         "from paraview.simple import *\n"
@@ -67,6 +66,4 @@ def test_plugin_path(prefix, tmp_path):
         "assert ZFPCompress(Wavelet()) and ZFPContour\n"
         "print('found')\n"
     )
-    assert (
-        under_x("pvpython", script, PV_PLUGIN_PATH=str(prefix / PLUGINS)).strip().endswith("found")
-    )
+    assert under_x("pvpython", script, PV_PLUGIN_PATH=str(plugins)).strip().endswith("found")

@@ -4,7 +4,7 @@
 # show an isosurface there, and saves OUTPUT/gui_window.png, the whole window as a user sees it, and
 # OUTPUT/gui_refining.png, the window a moment after the third image. What gui_script.py reports is
 # in OUTPUT/gui.json, what ParaView says in OUTPUT/gui.log. Needs Debian's python3-pil, which
-# ParaView's Python packages bring along, and python3-pyqt5.
+# ParaView's Python packages bring along, and python3-pyqt5 or, from Debian 13 on, python3-pyqt6.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 build=$(realpath "$1")

@@ -9,7 +9,12 @@ import os
 import pathlib
 
 from paraview import servermanager, simple
-from PyQt5 import QtCore, QtWidgets
+
+# two Qt in one process would end it: take the window's own
+if "libQt6Core" in pathlib.Path("/proc/self/maps").read_text():
+    from PyQt6 import QtCore, QtWidgets
+else:
+    from PyQt5 import QtCore, QtWidgets
 
 BUILD = pathlib.Path(os.environ["PROGISO_GUI_BUILD"])
 OUTPUT = pathlib.Path(os.environ["PROGISO_GUI_OUTPUT"])
@@ -49,7 +54,7 @@ def arrange():
     """Give the panel room, scroll it to the statistics, and let the event loop make an image."""
     window.findChild(QtWidgets.QDockWidget, "pipelineBrowserDock").hide()
     dock = window.findChild(QtWidgets.QDockWidget, "propertiesDock")
-    window.resizeDocks([dock], [480], QtCore.Qt.Horizontal)
+    window.resizeDocks([dock], [480], QtCore.Qt.Orientation.Horizontal)
     QtWidgets.QApplication.processEvents()
     widget, _ = panel()
     area = widget.parentWidget()

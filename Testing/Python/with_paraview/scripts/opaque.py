@@ -52,7 +52,7 @@ assert (blended[:, 2] > blended[:, 0]).mean() > 0.95
 
 # a transform moves it
 simple.Hide(front, view)
-display.Position = [100.0, 0.0, 0.0]
+session.move(display, [100.0, 0.0, 0.0])
 assert session.covered(session.screenshot(view, "opaque_moved_away.png")) == 0.0
 simple.ResetCamera(view)
 assert session.covered(session.screenshot(view, "opaque_moved.png")) > 0.1

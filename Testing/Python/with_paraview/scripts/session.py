@@ -98,6 +98,13 @@ def information(display):
     }
 
 
+def move(display, position):
+    """Move what a display shows, by the property that ParaView has called Translation since
+    5.13."""
+    name = "Translation" if display.GetProperty("Translation") else "Position"
+    setattr(display, name, position)
+
+
 def check_converged(display):
     """Return the figures of a complete image; fail if it is not complete or a figure is missing."""
     info = information(display)

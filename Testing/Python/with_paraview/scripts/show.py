@@ -57,13 +57,15 @@ assert session.PROGRESSIVE_ISOSURFACE in packed.GetProperty("Representation").Av
 
 # Another isovalue, moved and turned, with a mesh that cuts through.
 packed.Isovalues = [120]
-packed.Position, packed.Orientation = [3, 2, 1], [0, 0, 30]
+session.move(packed, [3, 2, 1])
+packed.Orientation = [0, 0, 30]
 sphere = simple.Sphere(Radius=9, Center=[14, 6, 8], ThetaResolution=40, PhiResolution=40)
 mesh = simple.Show(sphere, view)
 mesh.DiffuseColor = mesh.AmbientColor = [0.3, 0.5, 0.9]
 shoot("paraview-among-meshes", packed)
 simple.Hide(sphere, view)
-packed.Position, packed.Orientation = [0, 0, 0], [0, 0, 0]
+session.move(packed, [0, 0, 0])
+packed.Orientation = [0, 0, 0]
 
 # A budget without room for all of a volume decoded: the same picture in passes; without
 # speculation in more of them.

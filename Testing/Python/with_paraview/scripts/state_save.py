@@ -9,14 +9,10 @@ session.show_isosurface(
     wavelet, view, Isovalues=[130.0], DiffuseColor=[0.3, 0.6, 0.9], CompressionRate=16.0
 )
 compressed = simple.ZFPCompress(Input=wavelet, Rate=6)
-session.show_isosurface(
-    compressed,
-    view,
-    Isovalues=[220.0, 240.0],
-    DiffuseColor=[0.9, 0.4, 0.2],
-    Speculation=0,
-    Position=[10.0, 0.0, 0.0],
+moved = session.show_isosurface(
+    compressed, view, Isovalues=[220.0, 240.0], DiffuseColor=[0.9, 0.4, 0.2], Speculation=0
 )
+session.move(moved, [10.0, 0.0, 0.0])
 session.look(view)
 shown = session.screenshot(view, "state_saved.png")
 simple.SaveState(str(session.OUTPUT / "state.pvsm"))
