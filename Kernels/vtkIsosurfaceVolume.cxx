@@ -4,7 +4,6 @@
 
 #include "vtkCommand.h"
 #include "vtkObjectFactory.h"
-#include "vtkProgressiveIsosurfaceMapper.h"
 #include "vtkRenderer.h"
 #include "vtkSmartPointer.h"
 
@@ -34,27 +33,15 @@ int vtkIsosurfaceVolume::Draw(vtkViewport* viewport)
 int vtkIsosurfaceVolume::RenderOpaqueGeometry(vtkViewport* viewport)
 {
   this->InvokeEvent(vtkCommand::StartEvent);
-  return vtkProgressiveIsosurfaceMapper::IsTranslucent(this->GetProperty()) ? 0
-                                                                            : this->Draw(viewport);
+  return IsosurfaceTurns::IsOpaqueTurn(this) ? this->Draw(viewport) : 0;
 }
 
 int vtkIsosurfaceVolume::RenderVolumetricGeometry(vtkViewport* viewport)
 {
-  if (!vtkProgressiveIsosurfaceMapper::IsTranslucent(this->GetProperty()))
-  {
-    return 0;
-  }
-  if (vtkProgressiveIsosurfaceMapper::IsPeeled(this))
-  {
-    this->DrawsWithOverlays = true;
-    return 0;
-  }
-  return this->Draw(viewport);
+  return this->Turns.IsVolumetricTurn(this) ? this->Draw(viewport) : 0;
 }
 
 int vtkIsosurfaceVolume::RenderOverlay(vtkViewport* viewport)
 {
-  const bool draws = this->DrawsWithOverlays;
-  this->DrawsWithOverlays = false;
-  return draws ? this->Draw(viewport) : 0;
+  return this->Turns.IsOverlayTurn() ? this->Draw(viewport) : 0;
 }

@@ -21,6 +21,7 @@
 #ifndef vtkIsosurfaceVolume_h
 #define vtkIsosurfaceVolume_h
 
+#include "IsosurfaceTurns.h"         // for ivar
 #include "vtkProgIsoKernelsModule.h" // for export macro
 #include "vtkVolume.h"
 
@@ -48,7 +49,7 @@ protected:
 private:
   int Draw(vtkViewport* viewport);
 
-  bool DrawsWithOverlays = false; ///< in the present render
+  IsosurfaceTurns Turns;
 
   vtkIsosurfaceVolume(const vtkIsosurfaceVolume&) = delete;
   void operator=(const vtkIsosurfaceVolume&) = delete;

@@ -4,8 +4,6 @@
 
 #include "vtkLODProp3D.h"
 #include "vtkObjectFactory.h"
-#include "vtkProgressiveIsosurfaceMapper.h"
-#include "vtkVolumeProperty.h"
 
 vtkStandardNewMacro(vtkPVIsosurfaceLODVolume);
 
@@ -16,19 +14,21 @@ int vtkPVIsosurfaceLODVolume::RenderOpaqueGeometry(vtkViewport* viewport)
   {
     return this->Superclass::RenderOpaqueGeometry(viewport);
   }
-  return this->IsTranslucent() ? 0 : this->RenderIsosurfaces(viewport);
+  return IsosurfaceTurns::IsOpaqueTurn(this) ? this->RenderIsosurfaces(viewport) : 0;
 }
 
 //------------------------------------------------------------------------------
 int vtkPVIsosurfaceLODVolume::RenderVolumetricGeometry(vtkViewport* viewport)
 {
-  return !this->ShowsOutline() && this->IsTranslucent() ? this->RenderIsosurfaces(viewport) : 0;
+  return !this->ShowsOutline() && this->Turns.IsVolumetricTurn(this)
+    ? this->RenderIsosurfaces(viewport)
+    : 0;
 }
 
 //------------------------------------------------------------------------------
-bool vtkPVIsosurfaceLODVolume::IsTranslucent()
+int vtkPVIsosurfaceLODVolume::RenderOverlay(vtkViewport* viewport)
 {
-  return vtkProgressiveIsosurfaceMapper::IsTranslucent(this->GetProperty());
+  return this->Turns.IsOverlayTurn() ? this->RenderIsosurfaces(viewport) : 0;
 }
 
 //------------------------------------------------------------------------------

@@ -10,6 +10,7 @@
 #ifndef vtkPVIsosurfaceLODVolume_h
 #define vtkPVIsosurfaceLODVolume_h
 
+#include "IsosurfaceTurns.h" // for ivar
 #include "vtkPVLODVolume.h"
 
 class vtkPVIsosurfaceLODVolume : public vtkPVLODVolume
@@ -20,16 +21,18 @@ public:
 
   int RenderOpaqueGeometry(vtkViewport* viewport) override;
   int RenderVolumetricGeometry(vtkViewport* viewport) override;
+  int RenderOverlay(vtkViewport* viewport) override;
 
 protected:
   vtkPVIsosurfaceLODVolume() = default;
   ~vtkPVIsosurfaceLODVolume() override = default;
 
 private:
-  bool IsTranslucent();
   /// True on processes without data: they show the outline.
   bool ShowsOutline();
   int RenderIsosurfaces(vtkViewport* viewport);
+
+  IsosurfaceTurns Turns;
 
   vtkPVIsosurfaceLODVolume(const vtkPVIsosurfaceLODVolume&) = delete;
   void operator=(const vtkPVIsosurfaceLODVolume&) = delete;

@@ -252,9 +252,11 @@ void vtkProgressiveIsosurfaceRepresentation::SetInputArrayToProcess(
   int index, int port, int connection, int association, const char* name)
 {
   this->Superclass::SetInputArrayToProcess(index, port, connection, association, name);
-  if (DistributedPieces::GetNumberOfProcesses() > 1)
+  // Pieces hold only the arrays that are drawn. The client, a process by itself without data, has
+  // to ask for new ones too: the view delivers only what all processes take for new.
+  if (DistributedPieces::GetNumberOfProcesses() > 1 || this->GetNumberOfInputConnections(0) == 0)
   {
-    this->MarkModified(); // pieces hold only the arrays that are drawn
+    this->MarkModified();
   }
 }
 

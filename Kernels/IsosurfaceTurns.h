@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+// When a prop draws its isosurfaces. A renderer asks every prop in each pass of a render: opaque
+// surfaces have their turn in the opaque pass, translucent ones with the volumes, or with the
+// overlays where the depths of volumes are peeled, which the mapper cannot do.
+#ifndef IsosurfaceTurns_h
+#define IsosurfaceTurns_h
+
+#include "vtkProgressiveIsosurfaceMapper.h"
+#include "vtkVolume.h"
+
+class IsosurfaceTurns
+{
+public:
+  ///@{ Whether the prop draws now, when the renderer asks it for this geometry.
+  static bool IsOpaqueTurn(vtkVolume* prop) { return !IsTranslucent(prop); }
+
+  bool IsVolumetricTurn(vtkVolume* prop)
+  {
+    if (!IsTranslucent(prop))
+    {
+      return false;
+    }
+    this->DrawsWithOverlays = vtkProgressiveIsosurfaceMapper::IsPeeled(prop);
+    return !this->DrawsWithOverlays;
+  }
+
+  bool IsOverlayTurn()
+  {
+    const bool draws = this->DrawsWithOverlays;
+    this->DrawsWithOverlays = false;
+    return draws;
+  }
+  ///@}
+
+private:
+  static bool IsTranslucent(vtkVolume* prop)
+  {
+    return vtkProgressiveIsosurfaceMapper::IsTranslucent(prop->GetProperty());
+  }
+
+  bool DrawsWithOverlays = false; ///< in the present render
+};
+
+#endif
