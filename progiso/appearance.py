@@ -13,7 +13,7 @@ from ._typing import RGB
 from .vtkProgIsoKernels import vtkIsosurfaceVolume
 
 #: Most isovalues that a prop can show.
-MAX_ISOVALUES = 16
+MAX_ISOVALUES = 256
 
 
 def as_list(given: Any, is_one: Callable[[Any], bool]) -> list[Any]:

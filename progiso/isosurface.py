@@ -46,7 +46,7 @@ def make_isosurface(
         Plain (then compressed by the mapper at `rate`), or a compressed volume. Arrays as in
         `compress`.
     isovalue : float or sequence of float
-        In the units of the image's values; at most 16.
+        In the units of the image's values; at most 256.
     color : sequence of 3 float, a sequence of such, or vtkColorTransferFunction, default: white
         Red, green and blue from 0 to 1: one colour for all isovalues, or one for each, which it
         keeps when it is changed. A transfer function gives the colours at the isovalues.

@@ -81,7 +81,7 @@ def render(
     image : vtkmodules.vtkCommonDataModel.vtkImageData or numpy.ndarray
         Plain, or a compressed volume. Arrays as in `compress`.
     isovalue : float or sequence of float
-        In the units of the image's values; at most 16.
+        In the units of the image's values; at most 256.
     size : tuple of int, default: (1280, 720)
         Width and height in pixels, 1 to 16384 each.
     orbit : tuple of int, optional

@@ -54,7 +54,7 @@ class IsosurfaceComponent:
         volume : pyvista.ImageData or numpy.ndarray
             A plain image, a compressed volume, or a three-dimensional array.
         isovalue : float or sequence of float
-            In the units of the volume's values; at most 16.
+            In the units of the volume's values; at most 256.
         **options
             All other parameters of :func:`progiso.add_isosurface`.
 

@@ -96,7 +96,7 @@ def add_isosurface(
         A plain image, a compressed volume, or a three-dimensional array [x, y, z]. Plain data are
         compressed at `rate`.
     isovalue : float or sequence of float
-        In the units of the volume's values; at most 16. A whole number is an isovalue too, not a
+        In the units of the volume's values; at most 256. A whole number is an isovalue too, not a
         count: for that give ``numpy.linspace(low, high, count)``.
     scalars : str or array, optional
         Point or cell array of a plain image, by its name or itself; by default the active scalars.

@@ -11,7 +11,7 @@
 
 // Limits of the scene.
 const int MAX_LIGHTS = 16;
-const int MAX_ISOVALUES = 16;
+const int MAX_ISOVALUES = 256;
 const int MAX_CLIPPING_PLANES = 16;
 const int ALL_REGIONS = (1 << 27) - 1; // a bit for each cropping region
 const int PALETTE_SIZE = 256;          // colours

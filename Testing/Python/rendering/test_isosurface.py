@@ -94,11 +94,11 @@ def test_a_transfer_function_gives_the_colours(image):
 
 
 WRONG = {
-    "no isovalue": ({"isovalue": []}, ValueError, "isovalue: give 1 to 16"),
+    "no isovalue": ({"isovalue": []}, ValueError, "isovalue: give 1 to 256"),
     "too many isovalues": (
-        {"isovalue": range(17)},
+        {"isovalue": range(257)},
         ValueError,
-        "isovalue: give 1 to 16 isovalues, not 17",
+        "isovalue: give 1 to 256 isovalues, not 257",
     ),
     "isovalue's kind": ({"isovalue": "6"}, ValueError, "isovalue must be a finite number, got '6'"),
     "not finite": (

@@ -233,12 +233,12 @@ def complaints(scene):
 
 
 def test_too_many_isovalues(image):
-    """More than 16 that show are refused by one clear error; those that do not are not counted."""
-    surfaces = {-0.8 + 0.1 * i: (1, 1, i / 16, 0.2) for i in range(17)}
+    """More than 256 that show are refused by one clear error; those that do not are not counted."""
+    surfaces = {-0.8 + 1.6 * i / 256: (1, 1, i / 256, 0.2) for i in range(257)}
     scene = ComparisonScene(ours=True)
     show(scene, image, surfaces)
     (message,) = complaints(scene)
-    assert "at most 16 isovalues that show" in message and "17" in message
+    assert "at most 256 isovalues that show" in message and "257" in message
     assert np.ptp(picture_of(scene.window).reshape(-1, 3), axis=0).max() == 0
     surfaces[-0.8] = (1, 1, 1, 0.0)
     paint(scene.volumes[0], surfaces)
