@@ -133,6 +133,38 @@ vtkMTimeType vtkProgressiveIsosurfaceMapper::GetMTime()
   return this->ColorLookupTable ? std::max(time, this->ColorLookupTable->GetMTime()) : time;
 }
 
+void vtkProgressiveIsosurfaceMapper::CopySettings(vtkProgressiveIsosurfaceMapper* other)
+{
+  this->SetScalarMode(other->ScalarMode);
+  if (other->ArrayAccessMode == VTK_GET_ARRAY_BY_NAME)
+  {
+    this->SelectScalarArray(other->ArrayName);
+  }
+  else
+  {
+    this->SelectScalarArray(other->ArrayId);
+  }
+  this->SetComponent(other->Component);
+  this->SetRate(other->Rate);
+  this->SetKeepLabels(other->KeepLabels);
+  this->SetMaskNonFinite(other->MaskNonFinite);
+  this->SetColorArrayName(other->ColorArrayName);
+  this->SetColorComponent(other->ColorComponent);
+  this->SetColorLookupTable(other->ColorLookupTable);
+  this->SetLitLikeMeshes(other->LitLikeMeshes);
+  this->SetSpeculationLimit(other->SpeculationLimit);
+  this->SetMemoryBudget(other->MemoryBudget);
+  this->SetDecodeWholeVolume(other->DecodeWholeVolume);
+  this->SetLargestBuffer(other->LargestBuffer);
+  this->SetPixelsPerStraggler(other->PixelsPerStraggler);
+  this->SetDetailedStatistics(other->DetailedStatistics);
+  this->SetMaximumPassesPerRender(other->MaximumPassesPerRender);
+  this->SetClippingPlanes(other->ClippingPlanes);
+  this->SetCropping(other->Cropping);
+  this->SetCroppingRegionPlanes(other->CroppingRegionPlanes);
+  this->SetCroppingRegionFlags(other->CroppingRegionFlags);
+}
+
 void vtkProgressiveIsosurfaceMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
@@ -153,6 +185,7 @@ void vtkProgressiveIsosurfaceMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << "\n" << indent << "CompositeIndex: " << this->CompositeIndex << "\n";
   os << indent << "SpeculationLimit: " << this->SpeculationLimit << "\n";
   os << indent << "MemoryBudget: " << this->MemoryBudget << "\n";
+  os << indent << "MemoryShare: " << this->MemoryShare << "\n";
   os << indent << "DecodeWholeVolume: " << this->DecodeWholeVolume << "\n";
   os << indent << "LargestBuffer: " << this->LargestBuffer << "\n";
   os << indent << "PixelsPerStraggler: " << this->PixelsPerStraggler << "\n";
@@ -450,6 +483,7 @@ bool vtkProgressiveIsosurfaceMapper::UpdatePipeline(bool newImage, bool mayWait)
   this->Statistics->SetSource(nullptr);
   PipelineSettings settings;
   settings.MemoryBudget = this->MemoryBudget;
+  settings.MemoryShare = this->MemoryShare;
   settings.LargestBuffer = this->LargestBuffer;
   settings.PixelsPerStraggler = this->PixelsPerStraggler;
   settings.SpeculationLimit = this->SpeculationLimit;

@@ -14,7 +14,7 @@
  *
  * The surface is that of the trilinear interpolant of the decompressed values: it separates values
  * below the isovalue from all others. The volume property gives the isovalues
- * (vtkVolumeProperty::GetIsoSurfaceValues(), at most 16 that show), their colours and opacities
+ * (vtkVolumeProperty::GetIsoSurfaceValues(), at most 256 that show), their colours and opacities
  * (its transfer functions at the isovalues), shading, ambient, diffuse, specular and specular
  * power; the renderer gives the lights, at most 16 that are switched on. Rays pass through
  * translucent isosurfaces and end at opaque geometry. Clipping planes (at most 16) and cropping
@@ -203,6 +203,22 @@ public:
 
   ///@{
   /**
+   * Share of the memory budget, whether automatic or not, that this mapper takes, 0 … 1, where
+   * several mappers show blocks of one data set. Less than what suffices is raised to that. Default
+   * 1.
+   */
+  vtkSetClampMacro(MemoryShare, double, 0.0, 1.0);
+  vtkGetMacro(MemoryShare, double);
+  ///@}
+
+  /**
+   * Takes over what another mapper's properties are set to, but for the inputs and for what mappers
+   * that show blocks of one data set share among them: MemoryShare and TimeAllowance.
+   */
+  void CopySettings(vtkProgressiveIsosurfaceMapper* other);
+
+  ///@{
+  /**
    * Whether a volume whose decoded samples fit the memory budget is decoded as a whole: there is no
    * cache, no ray waits, one pass completes the image, and the compressed stream leaves the GPU.
    * The image is the same. Default on.
@@ -351,6 +367,7 @@ protected:
   unsigned int CompositeIndex = 0;
   int SpeculationLimit = 64;
   vtkTypeInt64 MemoryBudget = 0;
+  double MemoryShare = 1.0;
   bool DecodeWholeVolume = true;
   vtkTypeInt64 LargestBuffer = 0;
   int PixelsPerStraggler = -1;

@@ -44,6 +44,17 @@ std::int64_t ChooseBudget(
                                  : most;
 }
 
+// Of a budget that others share. A part of an automatic one is what suffices, at least.
+std::int64_t TakeShare(std::int64_t budget, const PipelineSettings& settings, std::int64_t least)
+{
+  if (settings.MemoryShare >= 1.0)
+  {
+    return budget;
+  }
+  const auto part = static_cast<std::int64_t>(settings.MemoryShare * static_cast<double>(budget));
+  return settings.MemoryBudget == 0 ? std::max(part, least) : part;
+}
+
 // As many slots, up to `most`, as so many bytes have room for.
 std::int64_t SlotsWithin(std::int64_t bytes, const SceneNeeds& scene, std::int64_t most)
 {
@@ -99,7 +110,7 @@ MemoryPlan PlanMemory(
   const bool mayBeWhole =
     settings.DecodeWholeVolume && BytesPerSlot(whole) * whole.Slots <= limits.LargestBuffer;
   plan.LeastBudget = mayBeWhole ? std::min(leastCached, wholeBytes) : leastCached;
-  plan.Wanted = ChooseBudget(limits, settings, scene);
+  plan.Wanted = TakeShare(ChooseBudget(limits, settings, scene), settings, plan.LeastBudget);
   plan.Budget = std::max(plan.Wanted, plan.LeastBudget);
   plan.Cached = !(mayBeWhole && wholeBytes <= plan.Budget);
   plan.MaximumSlots = LimitSlots(limits, plan.Budget, scene);

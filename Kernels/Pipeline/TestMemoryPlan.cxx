@@ -66,6 +66,20 @@ TEST(MemoryPlan, AutomaticBudgetIsAGibibyteOfBlocksOrAQuarterOfTheGPU)
   EXPECT_EQ(PlanMemory(Limits(2 * GiB), WithBudget(0), scene).Budget, GiB / 2);
 }
 
+TEST(MemoryPlan, AShareOfTheBudgetIsNeverTooSmall)
+{
+  const SceneNeeds scene = Scene(1024);
+  PipelineSettings settings = WithBudget(GiB);
+  settings.MemoryShare = 0.25;
+  EXPECT_EQ(PlanMemory(Limits(), settings, scene).Budget, GiB / 4);
+  settings.MemoryBudget = 0;
+  EXPECT_EQ(PlanMemory(Limits(2 * GiB), settings, scene).Budget, GiB / 8);
+  settings.MemoryShare = 1e-9;
+  const MemoryPlan plan = PlanMemory(Limits(), settings, scene);
+  EXPECT_EQ(plan.Budget, plan.LeastBudget);
+  EXPECT_EQ(plan.DescribeExcess(), "");
+}
+
 TEST(MemoryPlan, WholeVolumeWhereTheBudgetHasRoom)
 {
   const SceneNeeds scene = Scene(256);
