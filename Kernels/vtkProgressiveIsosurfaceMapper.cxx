@@ -152,6 +152,7 @@ void vtkProgressiveIsosurfaceMapper::CopySettings(vtkProgressiveIsosurfaceMapper
   this->SetColorComponent(other->ColorComponent);
   this->SetColorLookupTable(other->ColorLookupTable);
   this->SetLitLikeMeshes(other->LitLikeMeshes);
+  this->SetSelectionExtent(other->SelectionExtent);
   this->SetSpeculationLimit(other->SpeculationLimit);
   this->SetMemoryBudget(other->MemoryBudget);
   this->SetDecodeWholeVolume(other->DecodeWholeVolume);

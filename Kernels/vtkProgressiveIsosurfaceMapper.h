@@ -212,8 +212,8 @@ public:
   ///@}
 
   /**
-   * Takes over what another mapper's properties are set to, but for the inputs and for what mappers
-   * that show blocks of one data set share among them: MemoryShare and TimeAllowance.
+   * Takes over what another mapper's properties are set to, but for the inputs and for what is not
+   * the same for all blocks of a data set: MemoryShare, TimeAllowance and CompositeIndex.
    */
   void CopySettings(vtkProgressiveIsosurfaceMapper* other);
 

@@ -60,6 +60,22 @@ bool DistributedPieces::IsTrueAnywhere(bool here)
   return any != 0;
 }
 
+void DistributedPieces::FindWholeBounds(const double mine[6], double whole[6])
+{
+  double signedBounds[6]; // so that one reduction to the largest is enough
+  for (int i = 0; i < 6; ++i)
+  {
+    const bool empty = mine[i / 2 * 2] > mine[i / 2 * 2 + 1];
+    signedBounds[i] = empty ? -VTK_DOUBLE_MAX : (i % 2 == 0 ? -mine[i] : mine[i]);
+  }
+  vtkMultiProcessController::GetGlobalController()->AllReduce(
+    signedBounds, whole, 6, vtkCommunicator::MAX_OP);
+  for (int i = 0; i < 6; i += 2)
+  {
+    whole[i] = -whole[i];
+  }
+}
+
 vtkSmartPointer<vtkImageData> DistributedPieces::WithoutGhosts(vtkImageData* image)
 {
   int extent[6];

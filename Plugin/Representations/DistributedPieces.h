@@ -15,6 +15,9 @@ int GetNumberOfProcesses();
 /// Whether `here` is true on any process. All processes have to call it.
 bool IsTrueAnywhere(bool here);
 
+/// Finds the bounds around those of all processes. All processes have to call it.
+void FindWholeBounds(const double mine[6], double whole[6]);
+
 /// Copies an image without its ghost cells and arrays, which a compressed volume has none of.
 vtkSmartPointer<vtkImageData> WithoutGhosts(vtkImageData* image);
 

@@ -3,6 +3,7 @@
 #include "vtkPVIsosurfaceInformation.h"
 
 #include "vtkClientServerStream.h"
+#include "vtkIsosurfaceBlocksMapper.h"
 #include "vtkObjectFactory.h"
 #include "vtkProgressiveIsosurfaceMapper.h"
 #include "vtkProgressiveIsosurfaceRepresentation.h"
@@ -43,6 +44,7 @@ double AfterPass(const std::vector<double>& values, std::size_t pass)
 //------------------------------------------------------------------------------
 void vtkPVIsosurfaceInformation::Clear()
 {
+  this->ErrorMessage.clear();
   this->NumberOfProcesses = 0;
   this->CompletedFraction = this->TotalMilliseconds = 0.0;
   this->GPUBytes = this->CompressedBytes = this->MemoryBudget = 0.0;
@@ -55,57 +57,85 @@ void vtkPVIsosurfaceInformation::CopyFromObject(vtkObject* object)
 {
   this->Clear();
   auto* representation = vtkProgressiveIsosurfaceRepresentation::SafeDownCast(object);
-  if (!representation || representation->GetStatistics()->GetNumberOfPasses() == 0)
+  if (!representation)
   {
     return;
   }
-  vtkProgressiveIsosurfaceStatistics* statistics = representation->GetStatistics();
+  this->ErrorMessage = representation->GetErrorMessage();
+  for (const auto& mapper : representation->GetBlocksMapper()->GetMappers())
+  {
+    this->AddBlock(mapper);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkPVIsosurfaceInformation::AddBlock(vtkProgressiveIsosurfaceMapper* mapper)
+{
+  vtkProgressiveIsosurfaceStatistics* statistics = mapper->GetStatistics();
+  if (statistics->GetNumberOfPasses() == 0)
+  {
+    return;
+  }
+  const double completed = mapper->GetCompletedFraction();
+  this->CompletedFraction =
+    this->NumberOfProcesses == 0 ? completed : std::min(this->CompletedFraction, completed);
   this->NumberOfProcesses = 1;
-  this->CompletedFraction = representation->GetIsosurfaceMapper()->GetCompletedFraction();
-  this->TotalMilliseconds = statistics->GetTotalMilliseconds();
-  this->GPUBytes = static_cast<double>(statistics->GetTotalBytes());
-  this->CompressedBytes = static_cast<double>(statistics->GetCompressedBytes());
-  this->MemoryBudget = static_cast<double>(statistics->GetMemoryBudget());
+  this->TotalMilliseconds += statistics->GetTotalMilliseconds();
+  this->GPUBytes += static_cast<double>(statistics->GetTotalBytes());
+  this->CompressedBytes += static_cast<double>(statistics->GetCompressedBytes());
+  this->MemoryBudget += static_cast<double>(statistics->GetMemoryBudget());
+  std::vector<double> milliseconds, fractions;
   for (int pass = 0; pass < statistics->GetNumberOfPasses(); ++pass)
   {
-    this->PassMilliseconds.push_back(statistics->GetPassValue(pass, "elapsed_ms"));
-    this->PassCompleted.push_back(statistics->GetPassValue(pass, "completed"));
+    milliseconds.push_back(statistics->GetPassValue(pass, "elapsed_ms"));
+    fractions.push_back(statistics->GetPassValue(pass, "completed"));
   }
+  this->JoinPasses(milliseconds, fractions, [](double a, double b) { return a + b; });
 }
 
 //------------------------------------------------------------------------------
 void vtkPVIsosurfaceInformation::AddInformation(vtkPVInformation* information)
 {
   auto* other = vtkPVIsosurfaceInformation::SafeDownCast(information);
+  if (other && this->ErrorMessage.empty())
+  {
+    this->ErrorMessage = other->ErrorMessage;
+  }
   if (!other || other->NumberOfProcesses == 0)
   {
     return;
   }
-  const bool first = this->NumberOfProcesses == 0;
+  this->CompletedFraction = this->NumberOfProcesses == 0
+    ? other->CompletedFraction
+    : std::min(this->CompletedFraction, other->CompletedFraction);
   this->NumberOfProcesses += other->NumberOfProcesses;
-  this->CompletedFraction =
-    first ? other->CompletedFraction : std::min(this->CompletedFraction, other->CompletedFraction);
   this->TotalMilliseconds = std::max(this->TotalMilliseconds, other->TotalMilliseconds);
   this->GPUBytes += other->GPUBytes;
   this->CompressedBytes += other->CompressedBytes;
   this->MemoryBudget += other->MemoryBudget;
-  if (first)
+  this->JoinPasses(other->PassMilliseconds, other->PassCompleted,
+    [](double a, double b) { return std::max(a, b); });
+}
+
+//------------------------------------------------------------------------------
+void vtkPVIsosurfaceInformation::JoinPasses(const std::vector<double>& milliseconds,
+  const std::vector<double>& completed, double (*join)(double, double))
+{
+  if (this->PassCompleted.empty())
   {
-    this->PassMilliseconds = other->PassMilliseconds;
-    this->PassCompleted = other->PassCompleted;
+    this->PassMilliseconds = milliseconds;
+    this->PassCompleted = completed;
     return;
   }
-  const std::size_t passes = std::max(this->PassCompleted.size(), other->PassCompleted.size());
-  std::vector<double> milliseconds(passes), completed(passes);
+  const std::size_t passes = std::max(this->PassCompleted.size(), completed.size());
+  std::vector<double> joined(passes), least(passes);
   for (std::size_t pass = 0; pass < passes; ++pass)
   {
-    milliseconds[pass] =
-      std::max(AfterPass(this->PassMilliseconds, pass), AfterPass(other->PassMilliseconds, pass));
-    completed[pass] =
-      std::min(AfterPass(this->PassCompleted, pass), AfterPass(other->PassCompleted, pass));
+    joined[pass] = join(AfterPass(this->PassMilliseconds, pass), AfterPass(milliseconds, pass));
+    least[pass] = std::min(AfterPass(this->PassCompleted, pass), AfterPass(completed, pass));
   }
-  this->PassMilliseconds.swap(milliseconds);
-  this->PassCompleted.swap(completed);
+  this->PassMilliseconds.swap(joined);
+  this->PassCompleted.swap(least);
 }
 
 //------------------------------------------------------------------------------
@@ -114,7 +144,7 @@ void vtkPVIsosurfaceInformation::CopyToStream(vtkClientServerStream* stream)
   stream->Reset();
   *stream << vtkClientServerStream::Reply << this->NumberOfProcesses << this->CompletedFraction
           << this->TotalMilliseconds << this->GPUBytes << this->CompressedBytes
-          << this->MemoryBudget;
+          << this->MemoryBudget << this->ErrorMessage.c_str();
   Send(*stream, this->PassMilliseconds);
   Send(*stream, this->PassCompleted);
   *stream << vtkClientServerStream::End;
@@ -131,6 +161,9 @@ void vtkPVIsosurfaceInformation::CopyFromStream(const vtkClientServerStream* str
   {
     good = good && stream->GetArgument(0, argument++, value);
   }
+  const char* message = nullptr;
+  good = good && stream->GetArgument(0, argument++, &message);
+  this->ErrorMessage = good && message ? message : "";
   good = good && Receive(*stream, argument++, this->PassMilliseconds) &&
     Receive(*stream, argument++, this->PassCompleted);
   if (!good || this->PassMilliseconds.size() != this->PassCompleted.size())
@@ -145,6 +178,7 @@ void vtkPVIsosurfaceInformation::CopyFromStream(const vtkClientServerStream* str
 void vtkPVIsosurfaceInformation::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "ErrorMessage: " << this->ErrorMessage << "\n";
   os << indent << "NumberOfProcesses: " << this->NumberOfProcesses << "\n";
   os << indent << "NumberOfPasses: " << this->GetNumberOfPasses() << "\n";
   os << indent << "CompletedFraction: " << this->CompletedFraction << "\n";

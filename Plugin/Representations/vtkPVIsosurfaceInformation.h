@@ -6,7 +6,8 @@
  *
  * Gathers statistics from a vtkProgressiveIsosurfaceRepresentation. Processes that draw nothing (a
  * client that shows what a server renders, a process without a piece) do not count. Of all others,
- * bytes are summed, and of passes, completeness and times the slowest process counts.
+ * bytes are summed, and of passes, completeness and times the slowest process counts. A process
+ * that draws several blocks does so one after the other: their times are summed as well.
  */
 
 #ifndef vtkPVIsosurfaceInformation_h
@@ -15,7 +16,10 @@
 #include "vtkPVInformation.h"
 #include "vtkProgIsoRepresentationsModule.h" // for export macro
 
+#include <string> // for ivar
 #include <vector> // for the figures of each pass
+
+class vtkProgressiveIsosurfaceMapper;
 
 class VTKPROGISOREPRESENTATIONS_EXPORT vtkPVIsosurfaceInformation : public vtkPVInformation
 {
@@ -31,6 +35,9 @@ public:
   void CopyToStream(vtkClientServerStream* stream) override;
   void CopyFromStream(const vtkClientServerStream* stream) override;
   ///@}
+
+  /// Why a process has not drawn all of its piece, one of several reasons; empty: all have.
+  const std::string& GetErrorMessage() const { return this->ErrorMessage; }
 
   /// Number of processes that draw a piece.
   vtkGetMacro(NumberOfProcesses, int);
@@ -58,7 +65,12 @@ protected:
 
 private:
   void Clear();
+  void AddBlock(vtkProgressiveIsosurfaceMapper* mapper);
+  /// Joins the passes of two, each pass by a function of their milliseconds.
+  void JoinPasses(const std::vector<double>& milliseconds, const std::vector<double>& completed,
+    double (*join)(double, double));
 
+  std::string ErrorMessage;
   int NumberOfProcesses = 0;
   double CompletedFraction = 0.0;
   double TotalMilliseconds = 0.0;

@@ -3,7 +3,9 @@
 #include "vtkProgressiveIsosurfaceRepresentation.h"
 
 #include "DistributedPieces.h"
+#include "ImageBlocks.h"
 #include "Pieces/PieceExtents.h"
+#include "vtkIsosurfaceBlocksMapper.h"
 #include "vtkPVIsosurfaceLODVolume.h"
 
 #include "vtkCellData.h"
@@ -16,15 +18,16 @@
 #include "vtkImageZFPCompress.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMath.h"
 #include "vtkObjectFactory.h"
 #include "vtkOutlineSource.h"
 #include "vtkPVRenderView.h"
 #include "vtkPVView.h"
+#include "vtkPartitionedDataSet.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPointData.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkProgressiveIsosurfaceMapper.h"
-#include "vtkProgressiveIsosurfaceStatistics.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkVolumeProperty.h"
 
@@ -42,9 +45,10 @@ vtkStandardNewMacro(vtkProgressiveIsosurfaceRepresentation);
 //------------------------------------------------------------------------------
 vtkProgressiveIsosurfaceRepresentation::vtkProgressiveIsosurfaceRepresentation()
 {
-  auto mapper = vtkSmartPointer<vtkProgressiveIsosurfaceMapper>::New();
-  mapper->LitLikeMeshesOn(); // looks like the surface of ParaView's Contour
+  auto mapper = vtkSmartPointer<vtkIsosurfaceBlocksMapper>::New();
+  mapper->GetSettings()->LitLikeMeshesOn(); // looks like the surface of ParaView's Contour
   this->VolumeMapper = mapper;
+  vtkMath::UninitializeBounds(this->WholeBounds);
   this->Actor = vtkSmartPointer<vtkPVIsosurfaceLODVolume>::New();
   this->Actor->SetProperty(this->Property);
   this->Actor->SetLODMapper(this->OutlineMapper);
@@ -55,6 +59,16 @@ vtkProgressiveIsosurfaceRepresentation::vtkProgressiveIsosurfaceRepresentation()
 
 //------------------------------------------------------------------------------
 vtkProgressiveIsosurfaceRepresentation::~vtkProgressiveIsosurfaceRepresentation() = default;
+
+//------------------------------------------------------------------------------
+int vtkProgressiveIsosurfaceRepresentation::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkRectilinearGrid");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
 
 //------------------------------------------------------------------------------
 int vtkProgressiveIsosurfaceRepresentation::ProcessViewRequest(
@@ -82,8 +96,9 @@ int vtkProgressiveIsosurfaceRepresentation::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   const int good = this->Superclass::RequestUpdateExtent(request, inputVector, outputVector);
+  // blocks of composite data belong to a process as a whole
   if (inputVector[0]->GetNumberOfInformationObjects() == 1 &&
-    DistributedPieces::GetNumberOfProcesses() > 1)
+    vtkImageData::GetData(inputVector[0], 0) && DistributedPieces::GetNumberOfProcesses() > 1)
   {
     inputVector[0]->GetInformationObject(0)->Set(
       vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(),
@@ -97,16 +112,24 @@ int vtkProgressiveIsosurfaceRepresentation::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   this->Cache = nullptr;
-  const bool hasInput = inputVector[0]->GetNumberOfInformationObjects() == 1;
-  vtkImageData* image = hasInput ? vtkImageData::GetData(inputVector[0], 0) : nullptr;
-  // a process without input has no data and shows the outline
-  this->CanDraw = !hasInput || this->FindDrawnArray(image);
-  if (!image)
+  this->ErrorMessage.clear();
+  if (inputVector[0]->GetNumberOfInformationObjects() == 0)
   {
+    this->CanDraw = true; // without data the outline
     return this->Superclass::RequestData(request, inputVector, outputVector);
   }
-  this->SetPiece(this->MakePiece(image));
-  this->GetIsosurfaceMapper()->SetSelectionExtent(image->GetExtent()); // of what is selected from
+  if (vtkImageData* image = vtkImageData::GetData(inputVector[0], 0))
+  {
+    this->CanDraw = this->FindDrawnArray(image);
+    this->SetPiece(this->MakePiece(image));
+    this->GetIsosurfaceMapper()->SetSelectionExtent(image->GetExtent()); // of what is selected from
+  }
+  else
+  {
+    this->SetBlocks(this->MakeBlocks(vtkDataObject::GetData(inputVector[0], 0)));
+    this->GetIsosurfaceMapper()->SetSelectionExtent(0, -1, 0, -1, 0, -1); // each block's own
+  }
+  DistributedPieces::FindWholeBounds(this->DataBounds, this->WholeBounds);
   vtkStreamingDemandDrivenPipeline::GetWholeExtent(
     inputVector[0]->GetInformationObject(0), this->WholeExtent);
   // skips vtkImageVolumeRepresentation's, which would cut off the ghost cells
@@ -122,13 +145,28 @@ void vtkProgressiveIsosurfaceRepresentation::SetPiece(vtkImageData* piece)
   vtkNew<vtkImageData> outline;
   outline->CopyStructure(piece);
   outline->SetExtent(extent);
-  outline->GetBounds(this->DataBounds);
+  this->CanDraw = this->CanDraw && outline->GetNumberOfPoints() > 0;
+  this->SetDrawn(piece, outline->GetBounds());
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetBlocks(vtkPartitionedDataSet* blocks)
+{
+  double bounds[6];
+  blocks->GetBounds(bounds);
+  this->CanDraw = blocks->GetNumberOfPartitions() > 0;
+  this->SetDrawn(blocks, bounds);
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetDrawn(vtkDataObject* drawn, const double bounds[6])
+{
+  std::copy(bounds, bounds + 6, this->DataBounds);
   this->OutlineSource->SetBounds(this->DataBounds);
   this->OutlineSource->Update();
-  this->DataSize = piece->GetActualMemorySize();
-  this->Cache = piece;
+  this->DataSize = drawn->GetActualMemorySize();
+  this->Cache = drawn;
   this->Actor->SetEnableLOD(0);
-  this->CanDraw = this->CanDraw && outline->GetNumberOfPoints() > 0;
 }
 
 //------------------------------------------------------------------------------
@@ -150,6 +188,38 @@ vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::MakePiece(
 }
 
 //------------------------------------------------------------------------------
+vtkSmartPointer<vtkPartitionedDataSet> vtkProgressiveIsosurfaceRepresentation::MakeBlocks(
+  vtkDataObject* input)
+{
+  auto made = vtkSmartPointer<vtkPartitionedDataSet>::New();
+  const ImageBlocks::Found blocks = ImageBlocks::Find(input);
+  if (!this->FindArrayOfBlocks(blocks))
+  {
+    return made;
+  }
+  this->ColorOfBlocks = this->FindOtherColorArray(blocks);
+  const ImageBlocks::Arrays arrays = { this->DrawnArray.Association, this->DrawnArray.Name,
+    this->ColorOfBlocks };
+  for (vtkDataSet* block : blocks.Grids)
+  {
+    if (!ImageBlocks::HasArrays(block, { arrays.Association, arrays.Drawn, "" }))
+    {
+      continue; // as for Contour: arrays may be partial
+    }
+    if (auto image = ImageBlocks::MakeImage(block, arrays, this->ResampleUnevenGrids))
+    {
+      made->SetPartition(made->GetNumberOfPartitions(), image);
+    }
+    else
+    {
+      this->ErrorMessage = "the steps of a rectilinear grid are uneven: switch Resample Uneven "
+                           "Grids on, or use the filter Resample To Image";
+    }
+  }
+  return made;
+}
+
+//------------------------------------------------------------------------------
 vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::SelectArrays(
   vtkImageData* image)
 {
@@ -168,13 +238,6 @@ vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::SelectArra
 bool vtkProgressiveIsosurfaceRepresentation::FindDrawnArray(vtkImageData* image)
 {
   this->DrawnArray = ArraySelection();
-  if (!image)
-  {
-    vtkErrorMacro(
-      "Progressive Isosurface shows image data only; use the filter Resample To Image, or Extract "
-      "Block for one image of a composite data set.");
-    return false;
-  }
   return vtkCompressedVolume::IsCompressed(image) ? this->FindCompressedArray(image)
                                                   : this->FindPlainArray(image);
 }
@@ -190,7 +253,7 @@ bool vtkProgressiveIsosurfaceRepresentation::FindCompressedArray(vtkImageData* i
   }
   if (!volume->Read(piece))
   {
-    vtkErrorMacro("Progressive Isosurface: " << volume->GetErrorMessage());
+    this->ErrorMessage = volume->GetErrorMessage();
     return false;
   }
   this->DrawnArray = { volume->GetAssociation(), volume->GetArrayName() };
@@ -215,10 +278,36 @@ bool vtkProgressiveIsosurfaceRepresentation::FindPlainArray(vtkImageData* image)
   // a process may hold an empty piece of a distributed image, which has no arrays
   if (image->GetNumberOfPoints() > 0)
   {
-    vtkErrorMacro("Progressive Isosurface: the image has no array \""
-      << this->DrawnArray.Name << "\" and is no compressed volume; choose an Isosurface Array.");
+    this->ErrorMessage = "the image has no array \"" + this->DrawnArray.Name +
+      "\" and is no compressed volume; choose an Isosurface Array";
   }
   return false;
+}
+
+//------------------------------------------------------------------------------
+bool vtkProgressiveIsosurfaceRepresentation::FindArrayOfBlocks(const ImageBlocks::Found& blocks)
+{
+  this->DrawnArray = this->IsosurfaceArray;
+  bool found = false;
+  for (vtkDataSet* block : blocks.Grids)
+  {
+    vtkImageData* image = vtkImageData::SafeDownCast(block);
+    if (image && vtkCompressedVolume::IsCompressed(image) && !found)
+    {
+      found = this->FindCompressedArray(image);
+    }
+    found = found ||
+      ImageBlocks::HasArrays(block, { this->DrawnArray.Association, this->DrawnArray.Name, "" });
+  }
+  // other processes may have the blocks that can be drawn
+  if (!DistributedPieces::IsTrueAnywhere(found))
+  {
+    const bool anyGrid = DistributedPieces::IsTrueAnywhere(!blocks.Grids.empty());
+    this->ErrorMessage = anyGrid
+      ? "no block has the array \"" + this->DrawnArray.Name + "\"; choose an Isosurface Array"
+      : "none of the blocks is an image; use the filter Resample To Image";
+  }
+  return found;
 }
 
 //------------------------------------------------------------------------------
@@ -234,17 +323,37 @@ bool vtkProgressiveIsosurfaceRepresentation::IsColoredByDrawnArray()
 //------------------------------------------------------------------------------
 std::string vtkProgressiveIsosurfaceRepresentation::FindOtherColorArray(vtkImageData* image)
 {
+  const std::string name = image ? this->GetWantedColorArray() : std::string();
+  const bool there = !name.empty() && !vtkCompressedVolume::IsCompressed(image) &&
+    image->GetAttributes(this->DrawnArray.Association)->GetArray(name.c_str());
+  return there ? name : "";
+}
+
+//------------------------------------------------------------------------------
+std::string vtkProgressiveIsosurfaceRepresentation::FindOtherColorArray(
+  const ImageBlocks::Found& blocks)
+{
+  const ImageBlocks::Arrays drawn = { this->DrawnArray.Association, this->DrawnArray.Name, "" };
+  ImageBlocks::Arrays arrays = drawn;
+  arrays.Color = this->GetWantedColorArray();
+  const bool everywhere = std::all_of(blocks.Grids.begin(), blocks.Grids.end(),
+    [&](vtkDataSet* block)
+    { return ImageBlocks::HasArrays(block, arrays) || !ImageBlocks::HasArrays(block, drawn); });
+  return everywhere ? arrays.Color : "";
+}
+
+//------------------------------------------------------------------------------
+std::string vtkProgressiveIsosurfaceRepresentation::GetWantedColorArray()
+{
   vtkInformation* color = this->GetInputArrayInformation(0);
-  if (!image || !color || !color->Has(vtkDataObject::FIELD_ASSOCIATION()) ||
+  if (!color || !color->Has(vtkDataObject::FIELD_ASSOCIATION()) ||
     !color->Has(vtkDataObject::FIELD_NAME()) || !color->Get(vtkDataObject::FIELD_NAME()) ||
-    color->Get(vtkDataObject::FIELD_ASSOCIATION()) != this->DrawnArray.Association)
+    color->Get(vtkDataObject::FIELD_ASSOCIATION()) != this->DrawnArray.Association ||
+    color->Get(vtkDataObject::FIELD_NAME()) == this->DrawnArray.Name)
   {
     return "";
   }
-  const std::string name = color->Get(vtkDataObject::FIELD_NAME());
-  vtkDataSetAttributes* arrays = image->GetAttributes(this->DrawnArray.Association);
-  const bool there = name != this->DrawnArray.Name && arrays && arrays->GetArray(name.c_str());
-  return there && !vtkCompressedVolume::IsCompressed(image) ? name : "";
+  return color->Get(vtkDataObject::FIELD_NAME());
 }
 
 //------------------------------------------------------------------------------
@@ -252,9 +361,10 @@ void vtkProgressiveIsosurfaceRepresentation::SetInputArrayToProcess(
   int index, int port, int connection, int association, const char* name)
 {
   this->Superclass::SetInputArrayToProcess(index, port, connection, association, name);
-  // Pieces hold only the arrays that are drawn. The client, a process by itself without data, has
-  // to ask for new ones too: the view delivers only what all processes take for new.
-  if (DistributedPieces::GetNumberOfProcesses() > 1 || this->GetNumberOfInputConnections(0) == 0)
+  // Pieces and blocks hold only the arrays that are drawn. The client, a process by itself without
+  // data, has to ask for new ones too: the view delivers only what all processes take for new.
+  if (DistributedPieces::GetNumberOfProcesses() > 1 || this->GetNumberOfInputConnections(0) == 0 ||
+    vtkPartitionedDataSet::SafeDownCast(this->Cache))
   {
     this->MarkModified();
   }
@@ -265,11 +375,13 @@ void vtkProgressiveIsosurfaceRepresentation::UpdateMapperParameters()
 {
   // ParaView calls this before every image: what has not changed must keep its modified time, or
   // the mapper restarts the image.
-  this->VolumeMapper->SelectScalarArray(this->DrawnArray.Name.c_str());
-  this->VolumeMapper->SetScalarMode(
-    this->DrawnArray.Association == vtkDataObject::FIELD_ASSOCIATION_CELLS
-      ? VTK_SCALAR_MODE_USE_CELL_FIELD_DATA
-      : VTK_SCALAR_MODE_USE_POINT_FIELD_DATA);
+  vtkProgressiveIsosurfaceMapper* mapper = this->GetIsosurfaceMapper();
+  const bool cellData = this->DrawnArray.Association == vtkDataObject::FIELD_ASSOCIATION_CELLS &&
+    vtkImageData::SafeDownCast(this->Cache); // of blocks it has become point data
+  mapper->SelectScalarArray(this->DrawnArray.Name.c_str());
+  mapper->SetScalarMode(
+    cellData ? VTK_SCALAR_MODE_USE_CELL_FIELD_DATA : VTK_SCALAR_MODE_USE_POINT_FIELD_DATA);
+  this->UpdateCropping();
   this->UpdateLook();
   this->UpdateColors();
   this->Actor->SetMapper(this->VolumeMapper);
@@ -277,12 +389,24 @@ void vtkProgressiveIsosurfaceRepresentation::UpdateMapperParameters()
 }
 
 //------------------------------------------------------------------------------
+// As ParaView's Volume does, but with the bounds of all pieces.
+void vtkProgressiveIsosurfaceRepresentation::UpdateCropping()
+{
+  double planes[6];
+  for (int i = 0; i < 6; ++i)
+  {
+    planes[i] = this->CroppingOrigin[i / 2] + this->WholeBounds[i] * this->CroppingScale[i / 2];
+  }
+  this->VolumeMapper->SetCroppingRegionPlanes(planes);
+}
+
+//------------------------------------------------------------------------------
 void vtkProgressiveIsosurfaceRepresentation::UpdateColors()
 {
   vtkProgressiveIsosurfaceMapper* mapper = this->GetIsosurfaceMapper();
-  const std::string name = this->ColorMap
-    ? this->FindOtherColorArray(vtkImageData::SafeDownCast(this->Cache))
-    : std::string();
+  vtkImageData* image = vtkImageData::SafeDownCast(this->Cache);
+  const std::string other = image ? this->FindOtherColorArray(image) : this->ColorOfBlocks;
+  const std::string name = this->ColorMap ? other : "";
   mapper->SetColorArrayName(name.empty() ? nullptr : name.c_str());
   mapper->SetColorComponent(this->ColorMap ? std::max(this->ColorMap->GetVectorComponent(), 0) : 0);
   mapper->SetColorLookupTable(name.empty() ? nullptr : this->ColorMap.Get());
@@ -396,15 +520,32 @@ void vtkProgressiveIsosurfaceRepresentation::SetMemoryBudget(int mebibytes)
 }
 
 //------------------------------------------------------------------------------
-vtkProgressiveIsosurfaceMapper* vtkProgressiveIsosurfaceRepresentation::GetIsosurfaceMapper()
+void vtkProgressiveIsosurfaceRepresentation::SetResampleUnevenGrids(bool on)
 {
-  return vtkProgressiveIsosurfaceMapper::SafeDownCast(this->VolumeMapper);
+  if (this->ResampleUnevenGrids != on)
+  {
+    this->ResampleUnevenGrids = on;
+    this->MarkModified();
+  }
 }
 
 //------------------------------------------------------------------------------
-vtkProgressiveIsosurfaceStatistics* vtkProgressiveIsosurfaceRepresentation::GetStatistics()
+vtkProgressiveIsosurfaceMapper* vtkProgressiveIsosurfaceRepresentation::GetIsosurfaceMapper()
 {
-  return this->GetIsosurfaceMapper()->GetStatistics();
+  return this->GetBlocksMapper()->GetSettings();
+}
+
+//------------------------------------------------------------------------------
+vtkIsosurfaceBlocksMapper* vtkProgressiveIsosurfaceRepresentation::GetBlocksMapper()
+{
+  return vtkIsosurfaceBlocksMapper::SafeDownCast(this->VolumeMapper);
+}
+
+//------------------------------------------------------------------------------
+const std::string& vtkProgressiveIsosurfaceRepresentation::GetErrorMessage()
+{
+  return this->ErrorMessage.empty() ? this->GetBlocksMapper()->GetErrorMessage()
+                                    : this->ErrorMessage;
 }
 
 //------------------------------------------------------------------------------

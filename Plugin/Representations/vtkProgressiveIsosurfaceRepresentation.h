@@ -10,7 +10,10 @@
  * volumes. If the representation is coloured by the array that is drawn, a surface has the colour
  * map's colour at its isovalue, otherwise the solid colour.
  *
- * Shows image data only: rectilinear grids and composite data are an error.
+ * Of composite data sets (multi-block, partitioned, AMR) it shows all images, a mapper each, see
+ * vtkIsosurfaceBlocksMapper and ImageBlocks.h. Rectilinear grids of even steps are shown as the
+ * images that they are; others only if ResampleUnevenGrids is on, as no ray through their cells is
+ * straight among the samples.
  *
  * If several processes share an image, each draws its own piece, and ParaView composites them. With
  * its piece a process takes the surrounding samples that normals need, in whole blocks of the whole
@@ -27,8 +30,13 @@
 #include <string> // for ivar
 
 class vtkImageData;
+class vtkIsosurfaceBlocksMapper;
+class vtkPartitionedDataSet;
 class vtkProgressiveIsosurfaceMapper;
-class vtkProgressiveIsosurfaceStatistics;
+namespace ImageBlocks
+{
+struct Found;
+}
 
 class VTKPROGISOREPRESENTATIONS_EXPORT vtkProgressiveIsosurfaceRepresentation
   : public vtkImageVolumeRepresentation
@@ -84,16 +92,25 @@ public:
   void SetMemoryBudget(int mebibytes);
   ///@}
 
-  ///@{
-  /// The mapper that draws the surface on this process, and the statistics of its last image. See
-  /// vtkPVIsosurfaceInformation for the statistics of all processes.
+  /// Whether a rectilinear grid with uneven steps is resampled, see RectilinearImage.h; otherwise
+  /// it is an error.
+  void SetResampleUnevenGrids(bool on);
+
+  /// The mapper that has the settings of all that draw.
   vtkProgressiveIsosurfaceMapper* GetIsosurfaceMapper();
-  vtkProgressiveIsosurfaceStatistics* GetStatistics();
-  ///@}
+
+  /// The mappers that draw the surface on this process. See vtkPVIsosurfaceInformation for the
+  /// statistics of all processes.
+  vtkIsosurfaceBlocksMapper* GetBlocksMapper();
+
+  /// Why this process has drawn nothing, or not all; empty if it has drawn all.
+  const std::string& GetErrorMessage();
 
 protected:
   vtkProgressiveIsosurfaceRepresentation();
   ~vtkProgressiveIsosurfaceRepresentation() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
 
   int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
@@ -111,20 +128,30 @@ private:
   };
 
   ///@{
-  /// Sets DrawnArray from the input. Returns false if nothing can be drawn, after an error that
-  /// says why.
+  /// Sets DrawnArray from the input. Returns false if nothing can be drawn; ErrorMessage says why,
+  /// if it is not for other processes to draw.
   bool FindDrawnArray(vtkImageData* image);
   bool FindCompressedArray(vtkImageData* image);
   bool FindPlainArray(vtkImageData* image);
+  bool FindArrayOfBlocks(const ImageBlocks::Found& blocks);
   ///@}
 
-  /// Makes what this process draws of its input: with several processes, its piece and the samples
-  /// around it that it needs.
+  ///@{
+  /// Makes what this process draws of its input: of an image that several processes share, its
+  /// piece and the samples around it that it needs; of a composite data set its blocks.
   vtkSmartPointer<vtkImageData> MakePiece(vtkImageData* image);
+  vtkSmartPointer<vtkPartitionedDataSet> MakeBlocks(vtkDataObject* input);
+  ///@}
   /// Copies an image with only the array that is drawn, the one that gives the colours, and ghosts.
   vtkSmartPointer<vtkImageData> SelectArrays(vtkImageData* image);
+  ///@{
   /// Takes what is drawn, and finds its outline and size.
   void SetPiece(vtkImageData* piece);
+  void SetBlocks(vtkPartitionedDataSet* blocks);
+  void SetDrawn(vtkDataObject* drawn, const double bounds[6]);
+  ///@}
+
+  void UpdateCropping();
 
   /// Whether the representation is coloured by the array that is drawn.
   bool IsColoredByDrawnArray();
@@ -132,6 +159,9 @@ private:
   ///@{
   /// Finds the array that gives the colours in place of the one that is drawn; empty if none does.
   std::string FindOtherColorArray(vtkImageData* image);
+  std::string FindOtherColorArray(const ImageBlocks::Found& blocks);
+  /// The array that the representation is coloured by, if it is not drawn and has its association.
+  std::string GetWantedColorArray();
   void UpdateColors();
   ///@}
 
@@ -140,10 +170,14 @@ private:
 
   ArraySelection IsosurfaceArray; ///< as chosen by the user; without a name: the default array
   ArraySelection DrawnArray;      ///< of the present input
+  std::string ColorOfBlocks;      ///< FindOtherColorArray() of blocks
+  std::string ErrorMessage;       ///< of the last update
   vtkSmartPointer<vtkColorTransferFunction> ColorMap;
   vtkNew<vtkColorTransferFunction> SolidColor;
   double Opacity = 1.0;
   vtkNew<vtkPiecewiseFunction> SurfaceOpacity;
+  double WholeBounds[6]; ///< of the pieces of all processes
+  bool ResampleUnevenGrids = false;
   bool CanDraw = false;
 
   vtkProgressiveIsosurfaceRepresentation(const vtkProgressiveIsosurfaceRepresentation&) = delete;

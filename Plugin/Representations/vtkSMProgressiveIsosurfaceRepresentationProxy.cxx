@@ -46,8 +46,20 @@ void vtkSMProgressiveIsosurfaceRepresentationProxy::OnImage()
   if (this->IsActive())
   {
     this->UpdatePropertyInformation();
+    this->TellErrors();
     this->WarnIfNothingShows();
   }
+}
+
+//------------------------------------------------------------------------------
+void vtkSMProgressiveIsosurfaceRepresentationProxy::TellErrors()
+{
+  const std::string& message = this->Statistics->GetErrorMessage();
+  if (!message.empty() && message != this->ToldError)
+  {
+    vtkErrorMacro("Progressive Isosurface: " << message);
+  }
+  this->ToldError = message;
 }
 
 //------------------------------------------------------------------------------
@@ -60,7 +72,7 @@ void vtkSMProgressiveIsosurfaceRepresentationProxy::WarnIfNothingShows()
   const double lowest = domain ? domain->GetMinimum(0, hasLowest) : 0.0;
   const double highest = domain ? domain->GetMaximum(0, hasHighest) : 0.0;
   const std::vector<double> values = vtkSMPropertyHelper(property).GetDoubleArray();
-  const bool outside = hasLowest && hasHighest &&
+  const bool outside = hasLowest && hasHighest && lowest <= highest &&
     std::none_of(values.begin(), values.end(),
       [=](double value) { return lowest <= value && value <= highest; });
   if (outside && !this->Warned && vtkSMPropertyHelper(this, "Visibility").GetAsInt() != 0)
@@ -123,4 +135,5 @@ void vtkSMProgressiveIsosurfaceRepresentationProxy::PrintSelf(ostream& os, vtkIn
   this->Superclass::PrintSelf(os, indent);
   os << indent << "View: " << this->View << "\n";
   os << indent << "Warned: " << this->Warned << "\n";
+  os << indent << "ToldError: " << this->ToldError << "\n";
 }

@@ -9,7 +9,8 @@
  * of its view. It gathers them from all processes that draw: ParaView would ask only the client,
  * which draws nothing in remote rendering. The information properties hold the result, and
  * GetStatistics() each pass of it; UpdateInformationEvent tells observers of changes. The proxy
- * warns once if no isovalue lies in the array's range.
+ * tells what has gone wrong on any process, and warns if no isovalue lies in the array's range,
+ * both once.
  */
 
 #ifndef vtkSMProgressiveIsosurfaceRepresentationProxy_h
@@ -19,6 +20,8 @@
 #include "vtkProgIsoRepresentationsModule.h" // for export macro
 #include "vtkSMRepresentationProxy.h"
 #include "vtkWeakPointer.h" // for ivar
+
+#include <string> // for ivar
 
 class vtkPVIsosurfaceInformation;
 
@@ -48,6 +51,10 @@ private:
   /// Whether this is the active one of the representations of the data.
   bool IsActive();
 
+  /// Tells an error of any process when it is new: the others print on the machines that they are
+  /// on.
+  void TellErrors();
+
   /// Warns when all isovalues have come to lie outside the range of the array.
   void WarnIfNothingShows();
 
@@ -57,6 +64,7 @@ private:
   vtkWeakPointer<vtkSMProxy> View;
   unsigned long ImageObserver = 0;
   bool Warned = false;
+  std::string ToldError;
 
   vtkSMProgressiveIsosurfaceRepresentationProxy(
     const vtkSMProgressiveIsosurfaceRepresentationProxy&) = delete;

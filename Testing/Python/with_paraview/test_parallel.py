@@ -69,6 +69,11 @@ def test_server(build, tmp_path):
     under_x("pvpython", SCRIPTS / "remote.py", build, tmp_path, **MPI)
 
 
+def test_changes_on_a_server(build, tmp_path):
+    """Whatever is changed, the server's processes show what one process does."""
+    under_x("pvpython", SCRIPTS / "remote_changes.py", build, tmp_path, **MPI)
+
+
 def test_compressed_before_or_by_the_mapper(shown):
     """A piece is compressed to the same blocks by the filter and by the mapper."""
     for plain, compressed in (("plain", "compressed"), ("cells", "cells-compressed")):

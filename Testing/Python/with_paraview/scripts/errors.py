@@ -26,17 +26,6 @@ empty = simple.PassArrays(Input=session.make_wavelet())
 empty.PointDataArrays = []
 check_refused(empty, "no compressed volume", "errors_no_array.png")
 
-rectilinear = simple.ProgrammableSource(OutputDataSetType="vtkRectilinearGrid")
-rectilinear.Script = """
-from vtkmodules.util.numpy_support import numpy_to_vtk
-import numpy
-axis = numpy_to_vtk(numpy.arange(4.0), deep=1)
-output.SetDimensions(4, 4, 4)
-output.SetXCoordinates(axis); output.SetYCoordinates(axis); output.SetZCoordinates(axis)
-output.PointData.append(numpy.arange(64.0), "values")
-"""
-check_refused(rectilinear, "image data only", "errors_rectilinear.png")
-
 damaged = simple.ProgrammableFilter(
     Input=simple.ZFPCompress(Input=session.make_wavelet()), CopyArrays=1
 )

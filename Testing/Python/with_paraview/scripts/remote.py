@@ -1,9 +1,6 @@
 """A server of two processes renders; the client shows the picture, and the figures of both."""
 
-import os
-import socket
-import subprocess
-
+import server
 import session
 from paraview import servermanager, simple
 
@@ -22,45 +19,13 @@ def show_wavelet(name):
     return session.screenshot(view, name), session.check_converged(display), view, wavelet, display
 
 
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("localhost", 0))
-        return probe.getsockname()[1]
-
-
-def start_server(port):
-    """Start the server's processes.
-
-    They must not inherit MPI's variables, which say that MPI started this script.
-    """
-    environment = {
-        k: v
-        for k, v in os.environ.items()
-        if "ALLOW_RUN" in k or not k.startswith(("OMPI_", "PMIX_"))
-    }
-    command = [
-        "mpiexec",
-        "--oversubscribe",
-        "-n",
-        str(PROCESSES),
-        "pvserver",
-        f"--server-port={port}",
-    ]
-    return subprocess.Popen(command, env=environment)
-
-
 session.load_plugin()
 here, info_here, *_ = show_wavelet("remote_here.png")
 assert info_here["processes"] == 1, info_here
 assert session.covered(here) > 0.1
 
-port = free_port()
-server = start_server(port)
-try:
-    simple.Connect("localhost", port)  # tries for a minute
-    session.load_plugin(remote=True)
+with server.connected(PROCESSES):
     there, info, view, wavelet, display = show_wavelet("remote_there.png")
-    assert servermanager.ActiveConnection.GetNumberOfDataPartitions() == PROCESSES
     session.check_same(here, there, tolerance=2)
 
     # both processes draw, and each has its part of the volume
@@ -84,8 +49,5 @@ try:
     packed = session.show_isosurface(compressed, view, **LOOK)
     session.check_same(there, session.screenshot(view, "remote_compressed.png"))
     assert session.check_converged(packed)["processes"] == PROCESSES
-finally:
-    server.terminate()
-    server.wait()
 
 session.finish(here=info_here, there=info)

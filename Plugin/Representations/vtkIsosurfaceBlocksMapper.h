@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkIsosurfaceBlocksMapper
+ * @brief   isosurfaces of one image, or of all images of a partitioned data set
+ *
+ * Has a vtkProgressiveIsosurfaceMapper for each image and draws with one after the other. All take
+ * over GetSettings(), and the clipping planes and the cropping of this mapper. They share the
+ * memory budget by their numbers of samples, and the time of a frame. Translucent blocks are drawn
+ * from back to front.
+ */
+#ifndef vtkIsosurfaceBlocksMapper_h
+#define vtkIsosurfaceBlocksMapper_h
+
+#include "vtkNew.h"          // for ivar
+#include "vtkSmartPointer.h" // for ivar
+#include "vtkVolumeMapper.h"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+class vtkProgressiveIsosurfaceMapper;
+
+class vtkIsosurfaceBlocksMapper : public vtkVolumeMapper
+{
+public:
+  static vtkIsosurfaceBlocksMapper* New();
+  vtkTypeMacro(vtkIsosurfaceBlocksMapper, vtkVolumeMapper);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /// A mapper that draws nothing: all others take over its properties.
+  vtkProgressiveIsosurfaceMapper* GetSettings() { return this->Settings; }
+
+  /// The mappers of the blocks that the last render drew.
+  const std::vector<vtkSmartPointer<vtkProgressiveIsosurfaceMapper>>& GetMappers() const
+  {
+    return this->Mappers;
+  }
+
+  /// What has gone wrong in the last render, the first error of all blocks; empty: nothing. The
+  /// blocks' mappers do not print it.
+  const std::string& GetErrorMessage() const { return this->ErrorMessage; }
+
+  ///@{
+  /// See vtkVolumeMapper. The input for pickers is the one image, if it is one.
+  vtkDataSet* GetDataSetInput() override;
+  double* GetBounds() VTK_SIZEHINT(6) override;
+  using vtkVolumeMapper::GetBounds;
+  void Render(vtkRenderer* renderer, vtkVolume* volume) override;
+  void ReleaseGraphicsResources(vtkWindow* window) override;
+  ///@}
+
+protected:
+  vtkIsosurfaceBlocksMapper();
+  ~vtkIsosurfaceBlocksMapper() override;
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+
+private:
+  /// Gives each image of the input a mapper. Those of images that have gone are released.
+  void UpdateMappers(vtkWindow* window);
+  void UpdateSettings();
+  std::vector<std::size_t> FindOrder(vtkRenderer* renderer, vtkVolume* volume);
+  /// Called for an error of a block's mapper, with VTK's text of it.
+  void OnError(vtkObject* mapper, unsigned long event, void* text);
+
+  vtkNew<vtkProgressiveIsosurfaceMapper> Settings;
+  std::vector<vtkSmartPointer<vtkProgressiveIsosurfaceMapper>> Mappers;
+  std::string ErrorMessage;
+
+  vtkIsosurfaceBlocksMapper(const vtkIsosurfaceBlocksMapper&) = delete;
+  void operator=(const vtkIsosurfaceBlocksMapper&) = delete;
+};
+
+#endif
