@@ -11,6 +11,7 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkCompressedVolume.h"
 #include "vtkDataArray.h"
+#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkOverlappingAMR.h"
@@ -18,10 +19,13 @@
 #include "vtkRectilinearGrid.h"
 #include "vtkUniformGrid.h"
 #include "vtkUnsignedCharArray.h"
+#include "vtkUnsignedIntArray.h"
 
 namespace
 {
 using ImageBlocks::Arrays;
+
+constexpr const char* CompositeIndexName = "ProgIso.CompositeIndex"; // in field data
 
 bool IsCompressed(vtkDataSet* block)
 {
@@ -58,7 +62,7 @@ vtkSmartPointer<vtkCompositeDataSet> HideRefinedCells(vtkCompositeDataSet* data)
   return copy;
 }
 
-void AddBlock(vtkDataObject* object, ImageBlocks::Found& found)
+void AddBlock(vtkDataObject* object, unsigned int index, ImageBlocks::Found& found)
 {
   vtkDataSet* block = vtkDataSet::SafeDownCast(object);
   if (!vtkImageData::SafeDownCast(block) && !vtkRectilinearGrid::SafeDownCast(block))
@@ -67,7 +71,7 @@ void AddBlock(vtkDataObject* object, ImageBlocks::Found& found)
   }
   else if (block->GetNumberOfPoints() > 0)
   {
-    found.Grids.emplace_back(block);
+    found.Blocks.push_back({ block, index });
   }
 }
 
@@ -109,6 +113,31 @@ vtkSmartPointer<vtkDataSet> WithPointArrays(vtkDataSet* block, const Arrays& arr
   }
   return selected;
 }
+
+vtkSmartPointer<vtkImageData> CopyOf(vtkImageData* image)
+{
+  auto copy = vtk::TakeSmartPointer(image->NewInstance());
+  copy->ShallowCopy(image);
+  return copy;
+}
+
+vtkSmartPointer<vtkImageData> MakePlainImage(
+  vtkDataSet* block, const Arrays& arrays, bool resamplesUnevenGrids)
+{
+  auto* grid = vtkRectilinearGrid::SafeDownCast(block);
+  const bool even = !grid || RectilinearImage::IsEven(grid);
+  if (!even && !resamplesUnevenGrids)
+  {
+    return nullptr;
+  }
+  vtkSmartPointer<vtkDataSet> selected = WithPointArrays(block, arrays);
+  if (!grid)
+  {
+    return vtkImageData::SafeDownCast(selected);
+  }
+  grid = vtkRectilinearGrid::SafeDownCast(selected);
+  return even ? RectilinearImage::Convert(grid) : RectilinearImage::Resample(grid);
+}
 }
 
 //------------------------------------------------------------------------------
@@ -118,14 +147,14 @@ ImageBlocks::Found ImageBlocks::Find(vtkDataObject* input)
   auto* composite = vtkCompositeDataSet::SafeDownCast(input);
   if (!composite)
   {
-    AddBlock(input, found);
+    AddBlock(input, 0, found);
     return found;
   }
   vtkSmartPointer<vtkCompositeDataSet> data = HideRefinedCells(composite);
   auto blocks = vtk::TakeSmartPointer(data->NewIterator());
   for (blocks->InitTraversal(); !blocks->IsDoneWithTraversal(); blocks->GoToNextItem())
   {
-    AddBlock(blocks->GetCurrentDataObject(), found);
+    AddBlock(blocks->GetCurrentDataObject(), blocks->GetCurrentFlatIndex(), found);
   }
   return found;
 }
@@ -144,25 +173,25 @@ bool ImageBlocks::HasArrays(vtkDataSet* block, const Arrays& arrays)
 
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkImageData> ImageBlocks::MakeImage(
-  vtkDataSet* block, const Arrays& arrays, bool resamplesUnevenGrids)
+  const Block& block, const Arrays& arrays, bool resamplesUnevenGrids)
 {
-  if (IsCompressed(block))
+  vtkSmartPointer<vtkImageData> image = IsCompressed(block.Grid)
+    ? CopyOf(vtkImageData::SafeDownCast(block.Grid))
+    : MakePlainImage(block.Grid, arrays, resamplesUnevenGrids);
+  if (image)
   {
-    auto copy = vtk::TakeSmartPointer(vtkImageData::SafeDownCast(block)->NewInstance());
-    copy->ShallowCopy(block);
-    return copy;
+    vtkNew<vtkUnsignedIntArray> index;
+    index->SetName(CompositeIndexName);
+    index->InsertNextValue(block.CompositeIndex);
+    image->GetFieldData()->AddArray(index);
   }
-  auto* grid = vtkRectilinearGrid::SafeDownCast(block);
-  const bool even = !grid || RectilinearImage::IsEven(grid);
-  if (!even && !resamplesUnevenGrids)
-  {
-    return nullptr;
-  }
-  vtkSmartPointer<vtkDataSet> selected = WithPointArrays(block, arrays);
-  if (!grid)
-  {
-    return vtkImageData::SafeDownCast(selected);
-  }
-  grid = vtkRectilinearGrid::SafeDownCast(selected);
-  return even ? RectilinearImage::Convert(grid) : RectilinearImage::Resample(grid);
+  return image;
+}
+
+//------------------------------------------------------------------------------
+unsigned int ImageBlocks::GetCompositeIndex(vtkImageData* image)
+{
+  auto* index =
+    vtkUnsignedIntArray::SafeDownCast(image->GetFieldData()->GetArray(CompositeIndexName));
+  return index ? index->GetValue(0) : 0;
 }

@@ -24,11 +24,18 @@ struct Arrays
   std::string Color;
 };
 
+/// A part of a data set.
+struct Block
+{
+  vtkSmartPointer<vtkDataSet> Grid; ///< an image or a rectilinear grid, with points
+  unsigned int CompositeIndex;      ///< flat index in the composite data set; 0: it is the whole
+};
+
 /// What a data set consists of.
 struct Found
 {
-  std::vector<vtkSmartPointer<vtkDataSet>> Grids; ///< images and rectilinear grids, with points
-  int NumberOfOthers = 0;                         ///< that cannot be drawn
+  std::vector<Block> Blocks;
+  int NumberOfOthers = 0; ///< that cannot be drawn
 };
 
 /// Finds the blocks of a composite data set, or the one block that a rectilinear grid is. Cells of
@@ -38,11 +45,14 @@ Found Find(vtkDataObject* input);
 /// Whether a block has the arrays. A compressed volume has what it draws.
 bool HasArrays(vtkDataSet* block, const Arrays& arrays);
 
-/// Makes the image of a block, with those arrays alone and what hides cells. Cell data become point
-/// data, as for ParaView's Contour: so the surfaces of neighbouring blocks meet. Null if it is a
-/// rectilinear grid of uneven steps and these are not to be resampled.
+/// Makes the image of a block, with those arrays alone, its index and what hides cells. Cell data
+/// become point data, as for ParaView's Contour: so the surfaces of neighbouring blocks meet. Null
+/// if it is a rectilinear grid of uneven steps and these are not to be resampled.
 vtkSmartPointer<vtkImageData> MakeImage(
-  vtkDataSet* block, const Arrays& arrays, bool resamplesUnevenGrids);
+  const Block& block, const Arrays& arrays, bool resamplesUnevenGrids);
+
+/// The index that an image was made with; 0: it has none.
+unsigned int GetCompositeIndex(vtkImageData* image);
 }
 
 #endif

@@ -3,6 +3,7 @@
 #include "vtkIsosurfaceBlocksMapper.h"
 
 #include "BlockOrder.h"
+#include "ImageBlocks.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkCamera.h"
@@ -108,12 +109,16 @@ double* vtkIsosurfaceBlocksMapper::GetBounds()
 //------------------------------------------------------------------------------
 void vtkIsosurfaceBlocksMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
 {
-  this->ErrorMessage.clear();
+  this->NumberOfDrawn = 0;
   this->UpdateMappers(renderer->GetRenderWindow());
   this->UpdateSettings();
   for (std::size_t block : this->FindOrder(renderer, volume))
   {
     this->Mappers[block]->Render(renderer, volume);
+  }
+  if (this->NumberOfDrawn == this->Mappers.size())
+  {
+    this->Error.Text.clear();
   }
 }
 
@@ -132,11 +137,16 @@ void vtkIsosurfaceBlocksMapper::UpdateMappers(vtkWindow* window)
     {
       this->Mappers[i] = vtkSmartPointer<vtkProgressiveIsosurfaceMapper>::New();
       this->Mappers[i]->AddObserver(
-        vtkCommand::ErrorEvent, this, &vtkIsosurfaceBlocksMapper::OnError);
+        vtkCommand::ProgressEvent, this, &vtkIsosurfaceBlocksMapper::CountDrawn);
+      for (const unsigned long event : { vtkCommand::ErrorEvent, vtkCommand::WarningEvent })
+      {
+        this->Mappers[i]->AddObserver(event, this, &vtkIsosurfaceBlocksMapper::Keep);
+      }
     }
     if (this->Mappers[i]->GetInput() != images[i])
     {
       this->Mappers[i]->SetInputData(images[i]);
+      this->Mappers[i]->SetCompositeIndex(ImageBlocks::GetCompositeIndex(images[i]));
     }
   }
 }
@@ -183,16 +193,15 @@ std::vector<std::size_t> vtkIsosurfaceBlocksMapper::FindOrder(
 }
 
 //------------------------------------------------------------------------------
-// The text is "ERROR: In file, line number\nclass (address): message\n\n".
-void vtkIsosurfaceBlocksMapper::OnError(vtkObject*, unsigned long, void* text)
+// The text is "ERROR: In file, line number\nclass (address): message\n\n", or "Warning: …".
+void vtkIsosurfaceBlocksMapper::Keep(vtkObject*, unsigned long event, void* text)
 {
-  if (this->ErrorMessage.empty())
-  {
-    this->ErrorMessage = static_cast<const char*>(text);
-    const std::size_t address = this->ErrorMessage.find("): ");
-    this->ErrorMessage.erase(0, address == std::string::npos ? 0 : address + 3);
-    this->ErrorMessage.erase(this->ErrorMessage.find_last_not_of('\n') + 1);
-  }
+  Message& message = event == vtkCommand::ErrorEvent ? this->Error : this->Warning;
+  message.Text = static_cast<const char*>(text);
+  const std::size_t address = message.Text.find("): ");
+  message.Text.erase(0, address == std::string::npos ? 0 : address + 3);
+  message.Text.erase(message.Text.find_last_not_of('\n') + 1);
+  ++message.Count;
 }
 
 //------------------------------------------------------------------------------

@@ -38,9 +38,15 @@ public:
     return this->Mappers;
   }
 
-  /// What has gone wrong in the last render, the first error of all blocks; empty: nothing. The
-  /// blocks' mappers do not print it.
-  const std::string& GetErrorMessage() const { return this->ErrorMessage; }
+  /// What a block's mapper has told last, and how many messages there were before and with it. The
+  /// mappers do not print them. An error is empty once all blocks are drawn.
+  struct Message
+  {
+    std::string Text;
+    int Count = 0;
+  };
+  const Message& GetError() const { return this->Error; }
+  const Message& GetWarning() const { return this->Warning; }
 
   ///@{
   /// See vtkVolumeMapper. The input for pickers is the one image, if it is one.
@@ -61,12 +67,14 @@ private:
   void UpdateMappers(vtkWindow* window);
   void UpdateSettings();
   std::vector<std::size_t> FindOrder(vtkRenderer* renderer, vtkVolume* volume);
-  /// Called for an error of a block's mapper, with VTK's text of it.
-  void OnError(vtkObject* mapper, unsigned long event, void* text);
+  /// Called for an error or a warning of a block's mapper, with VTK's text of it.
+  void Keep(vtkObject* mapper, unsigned long event, void* text);
+  void CountDrawn() { ++this->NumberOfDrawn; }
 
   vtkNew<vtkProgressiveIsosurfaceMapper> Settings;
   std::vector<vtkSmartPointer<vtkProgressiveIsosurfaceMapper>> Mappers;
-  std::string ErrorMessage;
+  Message Error, Warning;
+  std::size_t NumberOfDrawn = 0; ///< blocks in the last render
 
   vtkIsosurfaceBlocksMapper(const vtkIsosurfaceBlocksMapper&) = delete;
   void operator=(const vtkIsosurfaceBlocksMapper&) = delete;

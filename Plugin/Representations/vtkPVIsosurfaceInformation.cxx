@@ -44,7 +44,9 @@ double AfterPass(const std::vector<double>& values, std::size_t pass)
 //------------------------------------------------------------------------------
 void vtkPVIsosurfaceInformation::Clear()
 {
-  this->ErrorMessage.clear();
+  this->Error.clear();
+  this->Warning.clear();
+  this->NumberOfErrors = this->NumberOfWarnings = 0;
   this->NumberOfProcesses = 0;
   this->CompletedFraction = this->TotalMilliseconds = 0.0;
   this->GPUBytes = this->CompressedBytes = this->MemoryBudget = 0.0;
@@ -61,7 +63,12 @@ void vtkPVIsosurfaceInformation::CopyFromObject(vtkObject* object)
   {
     return;
   }
-  this->ErrorMessage = representation->GetErrorMessage();
+  const vtkIsosurfaceBlocksMapper::Message error = representation->GetError();
+  const vtkIsosurfaceBlocksMapper::Message warning = representation->GetWarning();
+  this->Error = error.Text;
+  this->NumberOfErrors = error.Count;
+  this->Warning = warning.Text;
+  this->NumberOfWarnings = warning.Count;
   for (const auto& mapper : representation->GetBlocksMapper()->GetMappers())
   {
     this->AddBlock(mapper);
@@ -97,11 +104,15 @@ void vtkPVIsosurfaceInformation::AddBlock(vtkProgressiveIsosurfaceMapper* mapper
 void vtkPVIsosurfaceInformation::AddInformation(vtkPVInformation* information)
 {
   auto* other = vtkPVIsosurfaceInformation::SafeDownCast(information);
-  if (other && this->ErrorMessage.empty())
+  if (!other)
   {
-    this->ErrorMessage = other->ErrorMessage;
+    return;
   }
-  if (!other || other->NumberOfProcesses == 0)
+  this->Error = this->Error.empty() ? other->Error : this->Error;
+  this->Warning = this->Warning.empty() ? other->Warning : this->Warning;
+  this->NumberOfErrors += other->NumberOfErrors;
+  this->NumberOfWarnings += other->NumberOfWarnings;
+  if (other->NumberOfProcesses == 0)
   {
     return;
   }
@@ -144,7 +155,8 @@ void vtkPVIsosurfaceInformation::CopyToStream(vtkClientServerStream* stream)
   stream->Reset();
   *stream << vtkClientServerStream::Reply << this->NumberOfProcesses << this->CompletedFraction
           << this->TotalMilliseconds << this->GPUBytes << this->CompressedBytes
-          << this->MemoryBudget << this->ErrorMessage.c_str();
+          << this->MemoryBudget << this->NumberOfErrors << this->NumberOfWarnings
+          << this->Error.c_str() << this->Warning.c_str();
   Send(*stream, this->PassMilliseconds);
   Send(*stream, this->PassCompleted);
   *stream << vtkClientServerStream::End;
@@ -161,9 +173,16 @@ void vtkPVIsosurfaceInformation::CopyFromStream(const vtkClientServerStream* str
   {
     good = good && stream->GetArgument(0, argument++, value);
   }
-  const char* message = nullptr;
-  good = good && stream->GetArgument(0, argument++, &message);
-  this->ErrorMessage = good && message ? message : "";
+  for (int* value : { &this->NumberOfErrors, &this->NumberOfWarnings })
+  {
+    good = good && stream->GetArgument(0, argument++, value);
+  }
+  for (std::string* text : { &this->Error, &this->Warning })
+  {
+    const char* received = nullptr;
+    good = good && stream->GetArgument(0, argument++, &received);
+    *text = good && received ? received : "";
+  }
   good = good && Receive(*stream, argument++, this->PassMilliseconds) &&
     Receive(*stream, argument++, this->PassCompleted);
   if (!good || this->PassMilliseconds.size() != this->PassCompleted.size())
@@ -178,7 +197,10 @@ void vtkPVIsosurfaceInformation::CopyFromStream(const vtkClientServerStream* str
 void vtkPVIsosurfaceInformation::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "ErrorMessage: " << this->ErrorMessage << "\n";
+  os << indent << "NumberOfErrors: " << this->NumberOfErrors << "\n";
+  os << indent << "Error: " << this->Error << "\n";
+  os << indent << "NumberOfWarnings: " << this->NumberOfWarnings << "\n";
+  os << indent << "Warning: " << this->Warning << "\n";
   os << indent << "NumberOfProcesses: " << this->NumberOfProcesses << "\n";
   os << indent << "NumberOfPasses: " << this->GetNumberOfPasses() << "\n";
   os << indent << "CompletedFraction: " << this->CompletedFraction << "\n";

@@ -36,8 +36,14 @@ public:
   void CopyFromStream(const vtkClientServerStream* stream) override;
   ///@}
 
-  /// Why a process has not drawn all of its piece, one of several reasons; empty: all have.
-  const std::string& GetErrorMessage() const { return this->ErrorMessage; }
+  ///@{
+  /// Why a process has not drawn all of its piece, one of several reasons (empty: all have), what
+  /// one has warned of last, and how often processes have told such things so far.
+  const std::string& GetError() const { return this->Error; }
+  const std::string& GetWarning() const { return this->Warning; }
+  vtkGetMacro(NumberOfErrors, int);
+  vtkGetMacro(NumberOfWarnings, int);
+  ///@}
 
   /// Number of processes that draw a piece.
   vtkGetMacro(NumberOfProcesses, int);
@@ -70,7 +76,10 @@ private:
   void JoinPasses(const std::vector<double>& milliseconds, const std::vector<double>& completed,
     double (*join)(double, double));
 
-  std::string ErrorMessage;
+  std::string Error;
+  std::string Warning;
+  int NumberOfErrors = 0;
+  int NumberOfWarnings = 0;
   int NumberOfProcesses = 0;
   double CompletedFraction = 0.0;
   double TotalMilliseconds = 0.0;

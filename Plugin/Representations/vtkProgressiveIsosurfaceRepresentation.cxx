@@ -38,6 +38,15 @@ namespace
 // Blocks that a ray may test in one pass.
 constexpr int SPECULATION_ON = 64;
 constexpr int SPECULATION_OFF = 1;
+
+constexpr int Magnitude = -1; // as component of a vector, for the mapper
+
+using Message = vtkIsosurfaceBlocksMapper::Message;
+
+Message Join(const Message& first, const Message& second)
+{
+  return { first.Text.empty() ? second.Text : first.Text, first.Count + second.Count };
+}
 }
 
 vtkStandardNewMacro(vtkProgressiveIsosurfaceRepresentation);
@@ -112,7 +121,7 @@ int vtkProgressiveIsosurfaceRepresentation::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   this->Cache = nullptr;
-  this->ErrorMessage.clear();
+  this->Error.Text.clear();
   if (inputVector[0]->GetNumberOfInformationObjects() == 0)
   {
     this->CanDraw = true; // without data the outline
@@ -197,12 +206,11 @@ vtkSmartPointer<vtkPartitionedDataSet> vtkProgressiveIsosurfaceRepresentation::M
   {
     return made;
   }
-  this->ColorOfBlocks = this->FindOtherColorArray(blocks);
   const ImageBlocks::Arrays arrays = { this->DrawnArray.Association, this->DrawnArray.Name,
-    this->ColorOfBlocks };
-  for (vtkDataSet* block : blocks.Grids)
+    this->FindColorArrayOfBlocks(blocks) };
+  for (const ImageBlocks::Block& block : blocks.Blocks)
   {
-    if (!ImageBlocks::HasArrays(block, { arrays.Association, arrays.Drawn, "" }))
+    if (!ImageBlocks::HasArrays(block.Grid, { arrays.Association, arrays.Drawn, "" }))
     {
       continue; // as for Contour: arrays may be partial
     }
@@ -212,8 +220,8 @@ vtkSmartPointer<vtkPartitionedDataSet> vtkProgressiveIsosurfaceRepresentation::M
     }
     else
     {
-      this->ErrorMessage = "the steps of a rectilinear grid are uneven: switch Resample Uneven "
-                           "Grids on, or use the filter Resample To Image";
+      this->Fail("the steps of a rectilinear grid are uneven: switch Resample Uneven Grids on, or "
+                 "use the filter Resample To Image");
     }
   }
   return made;
@@ -230,7 +238,11 @@ vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::SelectArra
   vtkDataSetAttributes* from = image->GetAttributes(this->DrawnArray.Association);
   vtkDataSetAttributes* to = selected->GetAttributes(this->DrawnArray.Association);
   to->AddArray(from->GetArray(this->DrawnArray.Name.c_str()));
-  to->AddArray(from->GetArray(this->FindOtherColorArray(image).c_str()));
+  const ArraySelection color = this->GetColorArray();
+  if (color.Association == this->DrawnArray.Association)
+  {
+    to->AddArray(from->GetArray(color.Name.c_str()));
+  }
   return selected;
 }
 
@@ -253,7 +265,7 @@ bool vtkProgressiveIsosurfaceRepresentation::FindCompressedArray(vtkImageData* i
   }
   if (!volume->Read(piece))
   {
-    this->ErrorMessage = volume->GetErrorMessage();
+    this->Fail(volume->GetErrorMessage());
     return false;
   }
   this->DrawnArray = { volume->GetAssociation(), volume->GetArrayName() };
@@ -278,8 +290,8 @@ bool vtkProgressiveIsosurfaceRepresentation::FindPlainArray(vtkImageData* image)
   // a process may hold an empty piece of a distributed image, which has no arrays
   if (image->GetNumberOfPoints() > 0)
   {
-    this->ErrorMessage = "the image has no array \"" + this->DrawnArray.Name +
-      "\" and is no compressed volume; choose an Isosurface Array";
+    this->Fail("the image has no array \"" + this->DrawnArray.Name +
+      "\" and is no compressed volume; choose an Isosurface Array");
   }
   return false;
 }
@@ -289,71 +301,104 @@ bool vtkProgressiveIsosurfaceRepresentation::FindArrayOfBlocks(const ImageBlocks
 {
   this->DrawnArray = this->IsosurfaceArray;
   bool found = false;
-  for (vtkDataSet* block : blocks.Grids)
+  for (const ImageBlocks::Block& block : blocks.Blocks)
   {
-    vtkImageData* image = vtkImageData::SafeDownCast(block);
+    vtkImageData* image = vtkImageData::SafeDownCast(block.Grid);
     if (image && vtkCompressedVolume::IsCompressed(image) && !found)
     {
       found = this->FindCompressedArray(image);
     }
     found = found ||
-      ImageBlocks::HasArrays(block, { this->DrawnArray.Association, this->DrawnArray.Name, "" });
+      ImageBlocks::HasArrays(
+        block.Grid, { this->DrawnArray.Association, this->DrawnArray.Name, "" });
   }
   // other processes may have the blocks that can be drawn
   if (!DistributedPieces::IsTrueAnywhere(found))
   {
-    const bool anyGrid = DistributedPieces::IsTrueAnywhere(!blocks.Grids.empty());
-    this->ErrorMessage = anyGrid
-      ? "no block has the array \"" + this->DrawnArray.Name + "\"; choose an Isosurface Array"
-      : "none of the blocks is an image; use the filter Resample To Image";
+    const bool anyGrid = DistributedPieces::IsTrueAnywhere(!blocks.Blocks.empty());
+    this->Fail(anyGrid
+        ? "no block has the array \"" + this->DrawnArray.Name + "\"; choose an Isosurface Array"
+        : "none of the blocks is an image; use the filter Resample To Image");
   }
   return found;
 }
 
 //------------------------------------------------------------------------------
+vtkProgressiveIsosurfaceRepresentation::ArraySelection
+vtkProgressiveIsosurfaceRepresentation::GetColorArray()
+{
+  vtkInformation* color = this->GetInputArrayInformation(0);
+  const bool chosen = this->ColorMap && color && color->Has(vtkDataObject::FIELD_ASSOCIATION()) &&
+    color->Has(vtkDataObject::FIELD_NAME()) && color->Get(vtkDataObject::FIELD_NAME());
+  return chosen ? ArraySelection{ color->Get(vtkDataObject::FIELD_ASSOCIATION()),
+    color->Get(vtkDataObject::FIELD_NAME()) }
+                : ArraySelection();
+}
+
+//------------------------------------------------------------------------------
+vtkDataArray* vtkProgressiveIsosurfaceRepresentation::FindArray(const std::string& name)
+{
+  vtkImageData* image = vtkImageData::SafeDownCast(this->Cache);
+  int association = this->DrawnArray.Association;
+  auto* blocks = vtkPartitionedDataSet::SafeDownCast(this->Cache);
+  if (blocks && blocks->GetNumberOfPartitions() > 0)
+  {
+    image = vtkImageData::SafeDownCast(blocks->GetPartition(0));
+    association = vtkDataObject::FIELD_ASSOCIATION_POINTS; // whatever it was
+  }
+  return image ? image->GetAttributes(association)->GetArray(name.c_str()) : nullptr;
+}
+
+//------------------------------------------------------------------------------
+int vtkProgressiveIsosurfaceRepresentation::GetDrawnComponent()
+{
+  vtkDataArray* array = this->FindArray(this->DrawnArray.Name);
+  const bool isLast = array && this->IsosurfaceComponent == array->GetNumberOfComponents();
+  return isLast ? Magnitude : this->IsosurfaceComponent; // as ParaView numbers them
+}
+
+//------------------------------------------------------------------------------
+int vtkProgressiveIsosurfaceRepresentation::GetColorComponent()
+{
+  vtkDataArray* array = this->FindArray(this->GetColorArray().Name);
+  if (!array || array->GetNumberOfComponents() == 1)
+  {
+    return 0;
+  }
+  return this->ColorMap->GetVectorMode() == vtkScalarsToColors::MAGNITUDE
+    ? Magnitude
+    : std::max(this->ColorMap->GetVectorComponent(), 0);
+}
+
+//------------------------------------------------------------------------------
 bool vtkProgressiveIsosurfaceRepresentation::IsColoredByDrawnArray()
 {
-  vtkInformation* color = this->GetInputArrayInformation(0);
-  return color && color->Has(vtkDataObject::FIELD_ASSOCIATION()) &&
-    color->Has(vtkDataObject::FIELD_NAME()) && color->Get(vtkDataObject::FIELD_NAME()) &&
-    color->Get(vtkDataObject::FIELD_ASSOCIATION()) == this->DrawnArray.Association &&
-    color->Get(vtkDataObject::FIELD_NAME()) == this->DrawnArray.Name;
+  const ArraySelection color = this->GetColorArray();
+  if (color.Name.empty() || color.Association != this->DrawnArray.Association ||
+    color.Name != this->DrawnArray.Name)
+  {
+    return false;
+  }
+  vtkDataArray* array = this->FindArray(color.Name); // a compressed volume has one component
+  return !array || array->GetNumberOfComponents() == 1 ||
+    this->GetColorComponent() == this->GetDrawnComponent();
 }
 
 //------------------------------------------------------------------------------
-std::string vtkProgressiveIsosurfaceRepresentation::FindOtherColorArray(vtkImageData* image)
-{
-  const std::string name = image ? this->GetWantedColorArray() : std::string();
-  const bool there = !name.empty() && !vtkCompressedVolume::IsCompressed(image) &&
-    image->GetAttributes(this->DrawnArray.Association)->GetArray(name.c_str());
-  return there ? name : "";
-}
-
-//------------------------------------------------------------------------------
-std::string vtkProgressiveIsosurfaceRepresentation::FindOtherColorArray(
+std::string vtkProgressiveIsosurfaceRepresentation::FindColorArrayOfBlocks(
   const ImageBlocks::Found& blocks)
 {
+  const ArraySelection color = this->GetColorArray();
   const ImageBlocks::Arrays drawn = { this->DrawnArray.Association, this->DrawnArray.Name, "" };
   ImageBlocks::Arrays arrays = drawn;
-  arrays.Color = this->GetWantedColorArray();
-  const bool everywhere = std::all_of(blocks.Grids.begin(), blocks.Grids.end(),
-    [&](vtkDataSet* block)
-    { return ImageBlocks::HasArrays(block, arrays) || !ImageBlocks::HasArrays(block, drawn); });
+  arrays.Color = color.Association == this->DrawnArray.Association ? color.Name : "";
+  const bool everywhere = std::all_of(blocks.Blocks.begin(), blocks.Blocks.end(),
+    [&](const ImageBlocks::Block& block)
+    {
+      return ImageBlocks::HasArrays(block.Grid, arrays) ||
+        !ImageBlocks::HasArrays(block.Grid, drawn);
+    });
   return everywhere ? arrays.Color : "";
-}
-
-//------------------------------------------------------------------------------
-std::string vtkProgressiveIsosurfaceRepresentation::GetWantedColorArray()
-{
-  vtkInformation* color = this->GetInputArrayInformation(0);
-  if (!color || !color->Has(vtkDataObject::FIELD_ASSOCIATION()) ||
-    !color->Has(vtkDataObject::FIELD_NAME()) || !color->Get(vtkDataObject::FIELD_NAME()) ||
-    color->Get(vtkDataObject::FIELD_ASSOCIATION()) != this->DrawnArray.Association ||
-    color->Get(vtkDataObject::FIELD_NAME()) == this->DrawnArray.Name)
-  {
-    return "";
-  }
-  return color->Get(vtkDataObject::FIELD_NAME());
 }
 
 //------------------------------------------------------------------------------
@@ -381,6 +426,7 @@ void vtkProgressiveIsosurfaceRepresentation::UpdateMapperParameters()
   mapper->SelectScalarArray(this->DrawnArray.Name.c_str());
   mapper->SetScalarMode(
     cellData ? VTK_SCALAR_MODE_USE_CELL_FIELD_DATA : VTK_SCALAR_MODE_USE_POINT_FIELD_DATA);
+  mapper->SetComponent(this->GetDrawnComponent());
   this->UpdateCropping();
   this->UpdateLook();
   this->UpdateColors();
@@ -404,18 +450,36 @@ void vtkProgressiveIsosurfaceRepresentation::UpdateCropping()
 void vtkProgressiveIsosurfaceRepresentation::UpdateColors()
 {
   vtkProgressiveIsosurfaceMapper* mapper = this->GetIsosurfaceMapper();
-  vtkImageData* image = vtkImageData::SafeDownCast(this->Cache);
-  const std::string other = image ? this->FindOtherColorArray(image) : this->ColorOfBlocks;
-  const std::string name = this->ColorMap ? other : "";
-  mapper->SetColorArrayName(name.empty() ? nullptr : name.c_str());
-  mapper->SetColorComponent(this->ColorMap ? std::max(this->ColorMap->GetVectorComponent(), 0) : 0);
-  mapper->SetColorLookupTable(name.empty() ? nullptr : this->ColorMap.Get());
+  const ArraySelection color = this->GetColorArray();
+  const bool byOther = color.Association == this->DrawnArray.Association &&
+    !this->IsColoredByDrawnArray() && this->FindArray(color.Name);
+  mapper->SetColorArrayName(byOther ? color.Name.c_str() : nullptr);
+  mapper->SetColorComponent(byOther ? this->GetColorComponent() : 0);
+  mapper->SetColorLookupTable(byOther ? this->ColorMap.Get() : nullptr);
+  this->WarnOfLostColors(!byOther && !this->IsColoredByDrawnArray() ? color : ArraySelection());
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::WarnOfLostColors(const ArraySelection& lost)
+{
+  const bool points = this->DrawnArray.Association == vtkDataObject::FIELD_ASSOCIATION_POINTS;
+  const bool ofOthers = points ? lost.Association == vtkDataObject::FIELD_ASSOCIATION_CELLS
+                               : lost.Association == vtkDataObject::FIELD_ASSOCIATION_POINTS;
+  const std::string name = this->CanDraw && ofOthers ? lost.Name : "";
+  if (name != this->LostColor && !name.empty())
+  {
+    const std::string filter = points ? "Cell Data to Point Data" : "Point Data to Cell Data";
+    this->Warn(std::string("the surface of ") + (points ? "point" : "cell") +
+      " data has its solid colour: the array \"" + name + "\" belongs to " +
+      (points ? "cells" : "points") + "; use the filter " + filter + " to colour by it");
+  }
+  this->LostColor = name;
 }
 
 //------------------------------------------------------------------------------
 void vtkProgressiveIsosurfaceRepresentation::UpdateLook()
 {
-  const bool mapped = this->ColorMap && this->IsColoredByDrawnArray();
+  const bool mapped = this->IsColoredByDrawnArray();
   this->Property->SetColor(mapped ? this->ColorMap.Get() : this->SolidColor.Get());
   auto* map = vtkDiscretizableColorTransferFunction::SafeDownCast(this->ColorMap);
   vtkPiecewiseFunction* opacities =
@@ -452,7 +516,7 @@ void vtkProgressiveIsosurfaceRepresentation::SetIsosurfaceArray(
 //------------------------------------------------------------------------------
 void vtkProgressiveIsosurfaceRepresentation::SetIsosurfaceComponent(int component)
 {
-  this->GetIsosurfaceMapper()->SetComponent(component);
+  this->IsosurfaceComponent = component;
 }
 
 //------------------------------------------------------------------------------
@@ -542,10 +606,27 @@ vtkIsosurfaceBlocksMapper* vtkProgressiveIsosurfaceRepresentation::GetBlocksMapp
 }
 
 //------------------------------------------------------------------------------
-const std::string& vtkProgressiveIsosurfaceRepresentation::GetErrorMessage()
+vtkIsosurfaceBlocksMapper::Message vtkProgressiveIsosurfaceRepresentation::GetError()
 {
-  return this->ErrorMessage.empty() ? this->GetBlocksMapper()->GetErrorMessage()
-                                    : this->ErrorMessage;
+  return Join(this->Error, this->GetBlocksMapper()->GetError());
+}
+
+//------------------------------------------------------------------------------
+vtkIsosurfaceBlocksMapper::Message vtkProgressiveIsosurfaceRepresentation::GetWarning()
+{
+  return Join(this->Warning, this->GetBlocksMapper()->GetWarning());
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::Fail(const std::string& message)
+{
+  this->Error = { message, this->Error.Count + 1 };
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::Warn(const std::string& message)
+{
+  this->Warning = { message, this->Warning.Count + 1 };
 }
 
 //------------------------------------------------------------------------------

@@ -25,12 +25,13 @@
 #define vtkProgressiveIsosurfaceRepresentation_h
 
 #include "vtkImageVolumeRepresentation.h"
+#include "vtkIsosurfaceBlocksMapper.h"       // for messages
 #include "vtkProgIsoRepresentationsModule.h" // for export macro
 
 #include <string> // for ivar
 
+class vtkDataArray;
 class vtkImageData;
-class vtkIsosurfaceBlocksMapper;
 class vtkPartitionedDataSet;
 class vtkProgressiveIsosurfaceMapper;
 namespace ImageBlocks
@@ -56,7 +57,7 @@ public:
    */
   void SetIsosurfaceArray(int index, int port, int connection, int association, const char* name);
 
-  /// The component of that array.
+  /// The component of that array; as many as it has: the magnitude.
   void SetIsosurfaceComponent(int component);
 
   ///@{
@@ -103,8 +104,12 @@ public:
   /// statistics of all processes.
   vtkIsosurfaceBlocksMapper* GetBlocksMapper();
 
-  /// Why this process has drawn nothing, or not all; empty if it has drawn all.
-  const std::string& GetErrorMessage();
+  ///@{
+  /// Why this process has drawn nothing, or not all (empty if it has drawn all); what it has warned
+  /// of last; and how often it did so.
+  vtkIsosurfaceBlocksMapper::Message GetError();
+  vtkIsosurfaceBlocksMapper::Message GetWarning();
+  ///@}
 
 protected:
   vtkProgressiveIsosurfaceRepresentation();
@@ -128,12 +133,18 @@ private:
   };
 
   ///@{
-  /// Sets DrawnArray from the input. Returns false if nothing can be drawn; ErrorMessage says why,
-  /// if it is not for other processes to draw.
+  /// Sets DrawnArray from the input. Returns false if nothing can be drawn; Error says why, if it
+  /// is not for other processes to draw.
   bool FindDrawnArray(vtkImageData* image);
   bool FindCompressedArray(vtkImageData* image);
   bool FindPlainArray(vtkImageData* image);
   bool FindArrayOfBlocks(const ImageBlocks::Found& blocks);
+  ///@}
+
+  ///@{
+  /// Keeps a message for the user, who may be on another machine.
+  void Fail(const std::string& message);
+  void Warn(const std::string& message);
   ///@}
 
   ///@{
@@ -153,25 +164,36 @@ private:
 
   void UpdateCropping();
 
-  /// Whether the representation is coloured by the array that is drawn.
-  bool IsColoredByDrawnArray();
+  /// The array that was chosen to colour by; without a name: none.
+  ArraySelection GetColorArray();
+
+  /// An array of what is drawn, or of its first block; null: there is none, or not on this process.
+  vtkDataArray* FindArray(const std::string& name);
 
   ///@{
-  /// Finds the array that gives the colours in place of the one that is drawn; empty if none does.
-  std::string FindOtherColorArray(vtkImageData* image);
-  std::string FindOtherColorArray(const ImageBlocks::Found& blocks);
-  /// The array that the representation is coloured by, if it is not drawn and has its association.
-  std::string GetWantedColorArray();
-  void UpdateColors();
+  /// The mapper's number of the component that is drawn, and of the one that is coloured by.
+  int GetDrawnComponent();
+  int GetColorComponent();
   ///@}
+
+  /// Whether the representation is coloured by what is drawn: by the array and its component.
+  bool IsColoredByDrawnArray();
+
+  /// Finds the array to colour blocks by; empty if not all of them have it.
+  std::string FindColorArrayOfBlocks(const ImageBlocks::Found& blocks);
+
+  void UpdateColors();
+  /// Warns once of an array that the surface cannot be coloured by; without a name: there is none.
+  void WarnOfLostColors(const ArraySelection& lost);
 
   /// Sets the property's colours, and its opacities: a function with one node for each isovalue.
   void UpdateLook();
 
   ArraySelection IsosurfaceArray; ///< as chosen by the user; without a name: the default array
   ArraySelection DrawnArray;      ///< of the present input
-  std::string ColorOfBlocks;      ///< FindOtherColorArray() of blocks
-  std::string ErrorMessage;       ///< of the last update
+  int IsosurfaceComponent = 0;    ///< as ParaView numbers them: the last one is the magnitude
+  std::string LostColor;          ///< that WarnOfLostColors() has warned of
+  vtkIsosurfaceBlocksMapper::Message Error, Warning; ///< of updates
   vtkSmartPointer<vtkColorTransferFunction> ColorMap;
   vtkNew<vtkColorTransferFunction> SolidColor;
   double Opacity = 1.0;

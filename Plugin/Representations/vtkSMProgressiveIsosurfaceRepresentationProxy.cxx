@@ -46,20 +46,26 @@ void vtkSMProgressiveIsosurfaceRepresentationProxy::OnImage()
   if (this->IsActive())
   {
     this->UpdatePropertyInformation();
-    this->TellErrors();
+    this->TellMessages();
     this->WarnIfNothingShows();
   }
 }
 
 //------------------------------------------------------------------------------
-void vtkSMProgressiveIsosurfaceRepresentationProxy::TellErrors()
+void vtkSMProgressiveIsosurfaceRepresentationProxy::TellMessages()
 {
-  const std::string& message = this->Statistics->GetErrorMessage();
-  if (!message.empty() && message != this->ToldError)
+  const std::string& error = this->Statistics->GetError();
+  if (this->Statistics->GetNumberOfErrors() > this->ToldErrors && !error.empty())
   {
-    vtkErrorMacro("Progressive Isosurface: " << message);
+    vtkErrorMacro("Progressive Isosurface: " << error);
   }
-  this->ToldError = message;
+  const std::string& warning = this->Statistics->GetWarning();
+  if (this->Statistics->GetNumberOfWarnings() > this->ToldWarnings && !warning.empty())
+  {
+    vtkWarningMacro("Progressive Isosurface: " << warning);
+  }
+  this->ToldErrors = this->Statistics->GetNumberOfErrors();
+  this->ToldWarnings = this->Statistics->GetNumberOfWarnings();
 }
 
 //------------------------------------------------------------------------------
@@ -135,5 +141,6 @@ void vtkSMProgressiveIsosurfaceRepresentationProxy::PrintSelf(ostream& os, vtkIn
   this->Superclass::PrintSelf(os, indent);
   os << indent << "View: " << this->View << "\n";
   os << indent << "Warned: " << this->Warned << "\n";
-  os << indent << "ToldError: " << this->ToldError << "\n";
+  os << indent << "ToldErrors: " << this->ToldErrors << "\n";
+  os << indent << "ToldWarnings: " << this->ToldWarnings << "\n";
 }

@@ -21,8 +21,6 @@
 #include "vtkSMRepresentationProxy.h"
 #include "vtkWeakPointer.h" // for ivar
 
-#include <string> // for ivar
-
 class vtkPVIsosurfaceInformation;
 
 class VTKPROGISOREPRESENTATIONS_EXPORT vtkSMProgressiveIsosurfaceRepresentationProxy
@@ -51,9 +49,8 @@ private:
   /// Whether this is the active one of the representations of the data.
   bool IsActive();
 
-  /// Tells an error of any process when it is new: the others print on the machines that they are
-  /// on.
-  void TellErrors();
+  /// Tells what any process has found wrong since the last image, here where the user is.
+  void TellMessages();
 
   /// Warns when all isovalues have come to lie outside the range of the array.
   void WarnIfNothingShows();
@@ -64,7 +61,8 @@ private:
   vtkWeakPointer<vtkSMProxy> View;
   unsigned long ImageObserver = 0;
   bool Warned = false;
-  std::string ToldError;
+  int ToldErrors = 0;
+  int ToldWarnings = 0;
 
   vtkSMProgressiveIsosurfaceRepresentationProxy(
     const vtkSMProgressiveIsosurfaceRepresentationProxy&) = delete;

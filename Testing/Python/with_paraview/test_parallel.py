@@ -69,9 +69,10 @@ def test_server(build, tmp_path):
     under_x("pvpython", SCRIPTS / "remote.py", build, tmp_path, **MPI)
 
 
-def test_changes_on_a_server(build, tmp_path):
+@pytest.mark.parametrize("name", ["remote_changes", "cropping"])
+def test_same_as_on_a_server(name, build, tmp_path):
     """Whatever is changed, the server's processes show what one process does."""
-    under_x("pvpython", SCRIPTS / "remote_changes.py", build, tmp_path, **MPI)
+    under_x("pvpython", SCRIPTS / f"{name}.py", build, tmp_path, **MPI)
 
 
 def test_compressed_before_or_by_the_mapper(shown):

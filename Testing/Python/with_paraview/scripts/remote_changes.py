@@ -91,6 +91,7 @@ CHANGES = [
     color("left"),
     hide_and_show,
     color("vector", "Y"),
+    color("vector", "Magnitude"),
     color("left"),
     time_step(1.0),
     setting(Opacity=0.5),
