@@ -29,6 +29,7 @@
 #include "vtkPolyDataMapper.h"
 #include "vtkProgressiveIsosurfaceMapper.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUniformGridAMR.h"
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
@@ -105,9 +106,10 @@ int vtkProgressiveIsosurfaceRepresentation::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   const int good = this->Superclass::RequestUpdateExtent(request, inputVector, outputVector);
-  // blocks of composite data belong to a process as a whole
+  // blocks may be in pieces, too; those of AMR belong to a process as a whole
   if (inputVector[0]->GetNumberOfInformationObjects() == 1 &&
-    vtkImageData::GetData(inputVector[0], 0) && DistributedPieces::GetNumberOfProcesses() > 1)
+    !vtkUniformGridAMR::GetData(inputVector[0], 0) &&
+    DistributedPieces::GetNumberOfProcesses() > 1)
   {
     inputVector[0]->GetInformationObject(0)->Set(
       vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(),
