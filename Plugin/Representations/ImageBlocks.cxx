@@ -13,6 +13,7 @@
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
+#include "vtkImageZFPCompress.h"
 #include "vtkNew.h"
 #include "vtkOverlappingAMR.h"
 #include "vtkPointData.h"
@@ -71,7 +72,13 @@ void AddBlock(vtkDataObject* object, unsigned int index, ImageBlocks::Found& fou
   }
   else if (block->GetNumberOfPoints() > 0)
   {
-    found.Blocks.push_back({ block, index });
+    vtkImageData* image = vtkImageData::SafeDownCast(block);
+    vtkSmartPointer<vtkDataSet> grid = block;
+    if (image)
+    {
+      grid = ImageBlocks::WithNamedScalars(image);
+    }
+    found.Blocks.push_back({ grid, index });
   }
 }
 
@@ -141,6 +148,26 @@ vtkSmartPointer<vtkImageData> MakePlainImage(
 }
 
 //------------------------------------------------------------------------------
+vtkSmartPointer<vtkImageData> ImageBlocks::WithNamedScalars(vtkImageData* image)
+{
+  vtkSmartPointer<vtkImageData> named = image;
+  for (int association :
+    { vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataObject::FIELD_ASSOCIATION_CELLS })
+  {
+    vtkDataArray* scalars = image->GetAttributes(association)->GetScalars();
+    if (scalars && !scalars->GetName())
+    {
+      auto copy = vtk::TakeSmartPointer(scalars->NewInstance());
+      copy->ShallowCopy(scalars);
+      copy->SetName("Scalars");
+      named = named == image ? CopyOf(image) : named;
+      named->GetAttributes(association)->SetScalars(copy);
+    }
+  }
+  return named;
+}
+
+//------------------------------------------------------------------------------
 ImageBlocks::Found ImageBlocks::Find(vtkDataObject* input)
 {
   Found found;
@@ -157,6 +184,15 @@ ImageBlocks::Found ImageBlocks::Find(vtkDataObject* input)
     AddBlock(blocks->GetCurrentDataObject(), blocks->GetCurrentFlatIndex(), found);
   }
   return found;
+}
+
+//------------------------------------------------------------------------------
+vtkDataArray* ImageBlocks::FindDefaultArray(vtkDataSet* block, int& association)
+{
+  vtkNew<vtkImageData> arrays; // vtkImageZFPCompress looks at nothing else
+  arrays->GetPointData()->ShallowCopy(block->GetPointData());
+  arrays->GetCellData()->ShallowCopy(block->GetCellData());
+  return vtkImageZFPCompress::FindDefaultArray(arrays, association);
 }
 
 //------------------------------------------------------------------------------

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+class vtkDataArray;
 class vtkDataObject;
 class vtkDataSet;
 class vtkImageData;
@@ -38,9 +39,17 @@ struct Found
   int NumberOfOthers = 0; ///< that cannot be drawn
 };
 
+/// The image, or where its active scalars have no name, by which ParaView knows arrays, a copy in
+/// which they have one.
+vtkSmartPointer<vtkImageData> WithNamedScalars(vtkImageData* image);
+
 /// Finds the blocks of a composite data set, or the one block that a rectilinear grid is. Cells of
 /// overlapping AMR that a finer block refines are hidden.
 Found Find(vtkDataObject* input);
+
+/// Finds the array of a block that is drawn if none is chosen, and its association; null: it has
+/// none.
+vtkDataArray* FindDefaultArray(vtkDataSet* block, int& association);
 
 /// Whether a block has the arrays. A compressed volume has what it draws.
 bool HasArrays(vtkDataSet* block, const Arrays& arrays);

@@ -17,6 +17,7 @@
 #include "vtkPartitionedDataSet.h"
 #include "vtkProgressiveIsosurfaceMapper.h"
 #include "vtkRenderWindow.h"
+#include "vtkRenderWindowInteractor.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
 
@@ -111,7 +112,7 @@ void vtkIsosurfaceBlocksMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
 {
   this->NumberOfDrawn = 0;
   this->UpdateMappers(renderer->GetRenderWindow());
-  this->UpdateSettings();
+  this->UpdateSettings(this->FindTime(renderer->GetRenderWindow()));
   for (std::size_t block : this->FindOrder(renderer, volume))
   {
     this->Mappers[block]->Render(renderer, volume);
@@ -152,7 +153,16 @@ void vtkIsosurfaceBlocksMapper::UpdateMappers(vtkWindow* window)
 }
 
 //------------------------------------------------------------------------------
-void vtkIsosurfaceBlocksMapper::UpdateSettings()
+double vtkIsosurfaceBlocksMapper::FindTime(vtkRenderWindow* window)
+{
+  vtkRenderWindowInteractor* interactor = window->GetInteractor();
+  const bool goesOn = interactor && interactor->IsA("QVTKInteractor");
+  const bool still = window->GetDesiredUpdateRate() < 1.0; // as ParaView sets it
+  return still && !goesOn ? VTK_DOUBLE_MAX : this->Settings->GetTimeAllowance();
+}
+
+//------------------------------------------------------------------------------
+void vtkIsosurfaceBlocksMapper::UpdateSettings(double seconds)
 {
   this->Settings->SetClippingPlanes(this->ClippingPlanes);
   this->Settings->SetCropping(this->Cropping);
@@ -167,8 +177,7 @@ void vtkIsosurfaceBlocksMapper::UpdateSettings()
   {
     mapper->CopySettings(this->Settings);
     mapper->SetMemoryShare(static_cast<double>(mapper->GetInput()->GetNumberOfPoints()) / samples);
-    mapper->SetTimeAllowance(
-      this->Settings->GetTimeAllowance() / static_cast<double>(this->Mappers.size()));
+    mapper->SetTimeAllowance(seconds / static_cast<double>(this->Mappers.size()));
   }
 }
 

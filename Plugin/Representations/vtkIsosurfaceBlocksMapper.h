@@ -21,6 +21,7 @@
 #include <vector>
 
 class vtkProgressiveIsosurfaceMapper;
+class vtkRenderWindow;
 
 class vtkIsosurfaceBlocksMapper : public vtkVolumeMapper
 {
@@ -65,7 +66,10 @@ protected:
 private:
   /// Gives each image of the input a mapper. Those of images that have gone are released.
   void UpdateMappers(vtkWindow* window);
-  void UpdateSettings();
+  void UpdateSettings(double seconds);
+  /// The time of a render, for all blocks. A still one is completed at once but in ParaView's own
+  /// window: a Python program's may have no event loop, which would go on with it.
+  double FindTime(vtkRenderWindow* window);
   std::vector<std::size_t> FindOrder(vtkRenderer* renderer, vtkVolume* volume);
   /// Called for an error or a warning of a block's mapper, with VTK's text of it.
   void Keep(vtkObject* mapper, unsigned long event, void* text);

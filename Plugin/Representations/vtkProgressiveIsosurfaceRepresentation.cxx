@@ -15,7 +15,6 @@
 #include "vtkDataArray.h"
 #include "vtkDiscretizableColorTransferFunction.h"
 #include "vtkImageData.h"
-#include "vtkImageZFPCompress.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMath.h"
@@ -108,8 +107,7 @@ int vtkProgressiveIsosurfaceRepresentation::RequestUpdateExtent(
   const int good = this->Superclass::RequestUpdateExtent(request, inputVector, outputVector);
   // blocks may be in pieces, too; those of AMR belong to a process as a whole
   if (inputVector[0]->GetNumberOfInformationObjects() == 1 &&
-    !vtkUniformGridAMR::GetData(inputVector[0], 0) &&
-    DistributedPieces::GetNumberOfProcesses() > 1)
+    !vtkUniformGridAMR::GetData(inputVector[0], 0) && DistributedPieces::GetNumberOfProcesses() > 1)
   {
     inputVector[0]->GetInformationObject(0)->Set(
       vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(),
@@ -129,8 +127,9 @@ int vtkProgressiveIsosurfaceRepresentation::RequestData(
     this->CanDraw = true; // without data the outline
     return this->Superclass::RequestData(request, inputVector, outputVector);
   }
-  if (vtkImageData* image = vtkImageData::GetData(inputVector[0], 0))
+  if (vtkImageData* input = vtkImageData::GetData(inputVector[0], 0))
   {
+    const vtkSmartPointer<vtkImageData> image = ImageBlocks::WithNamedScalars(input);
     this->CanDraw = this->FindDrawnArray(image);
     this->SetPiece(this->MakePiece(image));
     this->GetIsosurfaceMapper()->SetSelectionExtent(image->GetExtent()); // of what is selected from
@@ -275,15 +274,22 @@ bool vtkProgressiveIsosurfaceRepresentation::FindCompressedArray(vtkImageData* i
 }
 
 //------------------------------------------------------------------------------
+vtkProgressiveIsosurfaceRepresentation::ArraySelection
+vtkProgressiveIsosurfaceRepresentation::ChooseArray(vtkDataSet* grid)
+{
+  if (!this->IsosurfaceArray.Name.empty())
+  {
+    return this->IsosurfaceArray;
+  }
+  int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+  vtkDataArray* array = ImageBlocks::FindDefaultArray(grid, association);
+  return { association, array && array->GetName() ? array->GetName() : "" };
+}
+
+//------------------------------------------------------------------------------
 bool vtkProgressiveIsosurfaceRepresentation::FindPlainArray(vtkImageData* image)
 {
-  this->DrawnArray = this->IsosurfaceArray;
-  if (this->DrawnArray.Name.empty())
-  {
-    int association = vtkCompressedVolume::PointData;
-    vtkDataArray* array = vtkImageZFPCompress::FindDefaultArray(image, association);
-    this->DrawnArray = { association, array && array->GetName() ? array->GetName() : "" };
-  }
+  this->DrawnArray = this->ChooseArray(image);
   vtkDataSetAttributes* arrays = image->GetAttributes(this->DrawnArray.Association);
   if (arrays && arrays->GetArray(this->DrawnArray.Name.c_str()))
   {
@@ -292,8 +298,10 @@ bool vtkProgressiveIsosurfaceRepresentation::FindPlainArray(vtkImageData* image)
   // a process may hold an empty piece of a distributed image, which has no arrays
   if (image->GetNumberOfPoints() > 0)
   {
-    this->Fail("the image has no array \"" + this->DrawnArray.Name +
-      "\" and is no compressed volume; choose an Isosurface Array");
+    this->Fail(this->DrawnArray.Name.empty()
+        ? "the image has no array of numbers, and is no compressed volume"
+        : "the image has no array \"" + this->DrawnArray.Name +
+          "\" of numbers; choose an Isosurface Array");
   }
   return false;
 }
@@ -301,10 +309,11 @@ bool vtkProgressiveIsosurfaceRepresentation::FindPlainArray(vtkImageData* image)
 //------------------------------------------------------------------------------
 bool vtkProgressiveIsosurfaceRepresentation::FindArrayOfBlocks(const ImageBlocks::Found& blocks)
 {
-  this->DrawnArray = this->IsosurfaceArray;
+  this->DrawnArray = ArraySelection();
   bool found = false;
   for (const ImageBlocks::Block& block : blocks.Blocks)
   {
+    this->DrawnArray = found ? this->DrawnArray : this->ChooseArray(block.Grid);
     vtkImageData* image = vtkImageData::SafeDownCast(block.Grid);
     if (image && vtkCompressedVolume::IsCompressed(image) && !found)
     {

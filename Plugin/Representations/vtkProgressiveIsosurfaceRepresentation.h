@@ -31,6 +31,7 @@
 #include <string> // for ivar
 
 class vtkDataArray;
+class vtkDataSet;
 class vtkImageData;
 class vtkPartitionedDataSet;
 class vtkProgressiveIsosurfaceMapper;
@@ -140,6 +141,9 @@ private:
   bool FindPlainArray(vtkImageData* image);
   bool FindArrayOfBlocks(const ImageBlocks::Found& blocks);
   ///@}
+
+  /// The array that the user has chosen, or the default of a grid; without a name: it has none.
+  ArraySelection ChooseArray(vtkDataSet* grid);
 
   ///@{
   /// Keeps a message for the user, who may be on another machine.

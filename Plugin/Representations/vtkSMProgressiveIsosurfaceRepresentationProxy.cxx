@@ -115,6 +115,28 @@ void vtkSMProgressiveIsosurfaceRepresentationProxy::UpdatePropertyInformationInt
 }
 
 //------------------------------------------------------------------------------
+void vtkSMProgressiveIsosurfaceRepresentationProxy::SetPropertyModifiedFlag(
+  const char* name, int flag)
+{
+  this->Superclass::SetPropertyModifiedFlag(name, flag);
+  if (flag != 0 && std::strcmp(name, "IsosurfaceValues") == 0)
+  {
+    this->TakeOverIsosurfaceValues();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkSMProgressiveIsosurfaceRepresentationProxy::TakeOverIsosurfaceValues()
+{
+  const std::vector<double> values = vtkSMPropertyHelper(this, "IsosurfaceValues").GetDoubleArray();
+  if (!values.empty() && this->GetTrueParentProxy() && this->IsActive())
+  {
+    vtkSMPropertyHelper(this, "Isovalues")
+      .Set(values.data(), static_cast<unsigned int>(values.size()));
+  }
+}
+
+//------------------------------------------------------------------------------
 bool vtkSMProgressiveIsosurfaceRepresentationProxy::IsActive()
 {
   vtkSMProxy* whole = this->GetTrueParentProxy();

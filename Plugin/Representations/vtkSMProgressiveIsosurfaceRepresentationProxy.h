@@ -9,8 +9,9 @@
  * of its view. It gathers them from all processes that draw: ParaView would ask only the client,
  * which draws nothing in remote rendering. The information properties hold the result, and
  * GetStatistics() each pass of it; UpdateInformationEvent tells observers of changes. The proxy
- * tells what has gone wrong on any process, and warns if no isovalue lies in the array's range,
- * both once.
+ * takes over isovalues that are set as those of ParaView's Volume are, while this representation is
+ * the active one. It tells what has gone wrong on any process, and warns if no isovalue lies in the
+ * array's range, both once.
  */
 
 #ifndef vtkSMProgressiveIsosurfaceRepresentationProxy_h
@@ -41,10 +42,14 @@ protected:
   ~vtkSMProgressiveIsosurfaceRepresentationProxy() override;
 
   void UpdatePropertyInformationInternal(vtkSMProperty* property) override;
+  void SetPropertyModifiedFlag(const char* name, int flag) override;
 
 private:
   /// Called after an image of the view.
   void OnImage();
+
+  /// Copies IsosurfaceValues, which ParaView's Volume has, to Isovalues.
+  void TakeOverIsosurfaceValues();
 
   /// Whether this is the active one of the representations of the data.
   bool IsActive();

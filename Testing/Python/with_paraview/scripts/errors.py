@@ -26,6 +26,57 @@ empty = simple.PassArrays(Input=session.make_wavelet())
 empty.PointDataArrays = []
 check_refused(empty, "no compressed volume", "errors_no_array.png")
 
+
+def image_with(script):
+    """Return an image whose arrays a script makes."""
+    source = simple.ProgrammableSource(OutputDataSetType="vtkImageData")
+    source.ScriptRequestInformation = """
+pipeline = self.GetExecutive()
+self.GetOutputInformation(0).Set(pipeline.WHOLE_EXTENT(), (-4, 4, -4, 4, -4, 4), 6)
+"""
+    source.Script = f"""
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkStringArray
+import numpy
+image = self.GetImageDataOutput()
+image.SetExtent(-4, 4, -4, 4, -4, 4)
+z, y, x = numpy.meshgrid(*[numpy.arange(-4, 5.0)] * 3, indexing="ij")
+{script}
+"""
+    return source
+
+
+strings = image_with("""
+words = vtkStringArray()
+words.SetName("words")
+words.SetNumberOfValues(image.GetNumberOfPoints())
+image.GetPointData().AddArray(words)
+""")
+messages = show_and_listen(strings, "errors_strings.png")[1]
+assert messages.count("Progressive Isosurface:") == 1 and '"words" of numbers' in messages, messages
+simple.Delete(strings)
+
+# scalars without a name, which ParaView does not list, are drawn
+nameless = image_with("""
+image.GetPointData().SetScalars(numpy_to_vtk((x**2 + y**2 + z**2).ravel(), deep=1))
+""")
+session.show_isosurface(nameless, view, Isovalues=[9.0])
+session.look(view)
+assert session.covered(session.screenshot(view, "errors_nameless.png")) > 0.05
+simple.Delete(nameless)
+
+# points have no colours of cells: the solid colour, and a warning
+cells = simple.PointDatatoCellData(Input=session.make_wavelet(10), PassPointData=1)
+with session.messages() as listener:
+    display = session.show_isosurface(cells, view, IsosurfaceArray=["POINTS", "RTData"])
+    simple.ColorBy(display, ("CELLS", "RTData"))
+    for _ in range(3):
+        simple.Render(view)
+messages = listener.GetOutput()
+assert messages.count("Progressive Isosurface:") == 1, messages
+assert "Cell Data to Point Data" in messages, messages
+simple.Delete(cells)
+
 damaged = simple.ProgrammableFilter(
     Input=simple.ZFPCompress(Input=session.make_wavelet()), CopyArrays=1
 )
