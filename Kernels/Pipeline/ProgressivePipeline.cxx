@@ -601,6 +601,10 @@ void ProgressivePipeline::MarkBlocks()
   {
     this->Gpu->Dispatch(Stage::MarkBlocks,
       std::min(GroupsFor(Stage::MarkBlocks, this->Needs.Macrocells), MaximumResetGroups));
+    if (InfoOf(Stage::MarkCells).IsNeeded(Moment::Isovalues, this->Needs))
+    {
+      this->Gpu->Dispatch(Stage::MarkCells, std::min(this->Needs.Macrocells, MaximumResetGroups));
+    }
     this->MarkedIsovalues = this->Isovalues;
   }
 }

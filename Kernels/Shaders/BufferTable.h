@@ -26,6 +26,7 @@ enum class Buffer
   Layers,
   Rays,
   CacheValues,
+  CellMarks,
   CacheMap,
   CacheFreeSlots,
   CacheRequests,

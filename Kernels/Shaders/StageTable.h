@@ -15,6 +15,7 @@ enum class Stage
 {
   BlockRanges,
   MarkBlocks,
+  MarkCells,
   PlanPass,
   CacheReset,
   CacheUnwind,

@@ -5,15 +5,7 @@
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
 #include "Shared/Grid.glsl"
-
-// Tells whether a range has a value below the isovalue and one that is not.
-bool StraddlesIsovalue(float low, float high, int number)
-{
-  FloatSum isovalue = view.Isovalues[number];
-  precise float below = (low - isovalue.High) - isovalue.Low;
-  precise float above = (high - isovalue.High) - isovalue.Low;
-  return below < 0.0 && above >= 0.0;
-}
+#include "Rays/BlockRange.glsl"
 
 bool StraddlesAnyIsovalue(float low, float high)
 {
@@ -27,14 +19,11 @@ bool StraddlesAnyIsovalue(float low, float high)
   return false;
 }
 
-// 1 if a block's range, 8 + 8 bits as BlockRanges.comp stores them, holds an isovalue, else 0.
-uint IsMarked(vec2 macrocellRange, uint range)
+// 1 if a block's range holds an isovalue, else 0.
+uint IsMarked(vec2 macrocellRange, uint steps)
 {
-  uint low = range & 0xFFu;
-  uint high = range >> 8 & 0xFFu;
-  bool marked = low <= high &&
-    StraddlesAnyIsovalue(RangeLow(macrocellRange, low), RangeHigh(macrocellRange, high));
-  return marked ? 1u : 0u;
+  vec2 range = BlockRange(macrocellRange, steps);
+  return StraddlesAnyIsovalue(range.x, range.y) ? 1u : 0u;
 }
 
 // Two blocks share a word of ranges, 32 a word of marks.

@@ -58,6 +58,9 @@ BUFFER_CACHE_VALUES CacheValues { uvec4 cacheRows[]; };
 BUFFER_CACHE_VALUES CacheValues { uint cacheValues[]; };
 #endif
 #endif
+#ifdef BUFFER_CELL_MARKS
+BUFFER_CELL_MARKS CellMarks { uvec2 cellMarks[]; }; // see MarkCells.comp
+#endif
 #ifdef BUFFER_CACHE_MAP
 BUFFER_CACHE_MAP CacheMap { MapPage mapPages[]; };
 #endif

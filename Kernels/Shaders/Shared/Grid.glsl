@@ -54,6 +54,15 @@ uint LocalIndex(ivec3 block)
   return local.x + uint(MACROCELL_SIDE) * (local.y + uint(MACROCELL_SIDE) * local.z);
 }
 
+// Is a cell one of a set of its block's? Bit x + 4 y + 16 z is that of the cell with this lowest
+// corner.
+bool HoldsCell(uvec2 cells, ivec3 cell)
+{
+  uvec3 local = PlaceInBlock(cell);
+  uint bit = local.x + uint(BLOCK_SIDE) * local.y + uint(ROWS_PER_BLOCK) * (local.z & 1u);
+  return ((local.z < 2u ? cells.x : cells.y) >> bit & 1u) != 0u;
+}
+
 // What a plane of samples on x, y and z adds to the index of a sample in its block.
 const uvec3 STRIDES_IN_BLOCK = uvec3(1, BLOCK_SIDE, ROWS_PER_BLOCK);
 

@@ -75,7 +75,7 @@ vec2 VisibleRange(vec2 range, uvec2 hidden, ivec3 local, ivec3 count)
   for (int i = 0; i < SAMPLES_PER_BLOCK; ++i)
   {
     ivec3 cell = ivec3(i, i / BLOCK_SIDE, i / ROWS_PER_BLOCK) % BLOCK_SIDE;
-    if (all(lessThan(cell, count)) && !Hides(hidden, cell))
+    if (all(lessThan(cell, count)) && !HoldsCell(hidden, cell))
     {
       for (int corner = 0; corner < 8; ++corner)
       {

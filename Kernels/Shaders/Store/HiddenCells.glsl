@@ -1,6 +1,6 @@
 // Cells in which there is no surface because the volume's mask hides them (see vtkBlockMask). A
-// block has 64 bits, bit x + 4 y + 16 z for the cell with this lowest corner. They are copied into
-// the block's cache slot, so that only blocks without a slot have to search the runs.
+// block has 64 bits, see HoldsCell. They are copied into the block's cache slot, so that only
+// blocks without a slot have to search the runs.
 
 #include "Shared/Buffers.glsl"
 #include "Shared/Grid.glsl"
@@ -26,10 +26,3 @@ uvec2 FindHiddenCells(uint block)
   return uvec2(hiddenCells[hiddenRuns + 2u * low], hiddenCells[hiddenRuns + 2u * low + 1u]);
 }
 #endif
-
-bool Hides(uvec2 hidden, ivec3 cell)
-{
-  uvec3 local = PlaceInBlock(cell);
-  uint bit = local.x + uint(BLOCK_SIDE) * local.y + uint(ROWS_PER_BLOCK) * (local.z & 1u);
-  return ((local.z < 2u ? hidden.x : hidden.y) >> bit & 1u) != 0u;
-}

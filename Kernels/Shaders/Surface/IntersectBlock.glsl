@@ -6,6 +6,7 @@
 #include "Rays/Rays.glsl"
 #include "Rays/TraverseGrid.glsl"
 #include "Store/HiddenCells.glsl"
+#include "Surface/Excess.glsl"
 #include "Surface/Hits.glsl"
 #include "Surface/Intersection.glsl"
 #include BLOCK_ACCESS
@@ -14,15 +15,6 @@ vec4 LoadSamples(uvec4 at)
 {
   uvec4 bits = uvec4(cacheValues[at.x], cacheValues[at.y], cacheValues[at.z], cacheValues[at.w]);
   return uintBitsToFloat(bits);
-}
-
-// The values' excess over an isovalue, in sixteenths: a power of two changes no other bit, and
-// nothing overflows that a root is found by.
-vec4 Excess(vec4 values, int isovalue)
-{
-  vec2 level = 0.0625 * vec2(view.Isovalues[isovalue].High, view.Isovalues[isovalue].Low);
-  precise vec4 excess = (0.0625 * values - level.x) - level.y;
-  return excess;
 }
 
 Corners Excess(Corners values, int isovalue)
@@ -60,22 +52,37 @@ bool HoldsSurface(Corners w)
 #endif
 }
 
-// Which cells of a block are hidden. Its slot is the first of those that were found last.
-uvec2 HiddenCellsOf(ivec3 block)
+// What is known of a block's cells, a bit each: where all is decoded, which the surface crosses;
+// else which are hidden.
+uvec2 KnownCells(ivec3 block)
 {
-#ifdef HAS_HIDDEN_CELLS
-  return HiddenInSlot(FoundSlot(block, block));
+#ifdef HAS_CELL_MARKS
+  return cellMarks[BlockIndex(block)];
+#elif defined(HAS_HIDDEN_CELLS)
+  return HiddenInSlot(FoundSlot(block, block)); // of the slots that were found last
 #else
   return uvec2(0u);
 #endif
 }
 
-bool IsVisible(uvec2 hidden, ivec3 cell)
+// May a ray hit a surface in the cell? Samples that are loaded to find out are kept in `w`.
+bool MayHit(uvec2 known, ivec3 cell, inout Corners w)
 {
-#ifdef HAS_HIDDEN_CELLS
-  return !Hides(hidden, cell);
+#ifdef HAS_CELL_MARKS
+  return HoldsCell(known, cell);
 #else
-  return true;
+  w = LoadCorners(cell);
+  return HoldsSurface(w) && !HoldsCell(known, cell);
+#endif
+}
+
+// Of the cell that was found last.
+Corners CornersOf(ivec3 cell, Corners w)
+{
+#ifdef HAS_CELL_MARKS
+  return LoadCorners(cell);
+#else
+  return w;
 #endif
 }
 
@@ -211,7 +218,7 @@ bool IntersectBlock(Ray ray, GridPlace place, BlockCrossing crossing, out Hit hi
   Wide t0 = crossing.Enter;
   Wide end = crossing.Leave;
   CellPlace at = CellAt(ray, place, t0);
-  uvec2 hidden = HiddenCellsOf(place.Block);
+  uvec2 known = KnownCells(place.Block);
   for (int tested = 0; tested < 16; ++tested) // a ray crosses at most 10 cells of 4^3
   {
     Corners w;
@@ -222,8 +229,7 @@ bool IntersectBlock(Ray ray, GridPlace place, BlockCrossing crossing, out Hit hi
     {
       t1 = SmallestOf(at.Exits);
       last = !IsLess(t1, end);
-      w = LoadCorners(at.Cell);
-      crossed = HoldsSurface(w) && IsVisible(hidden, at.Cell);
+      crossed = MayHit(known, at.Cell, w);
       if (crossed || last)
       {
         break;
@@ -232,7 +238,7 @@ bool IntersectBlock(Ray ray, GridPlace place, BlockCrossing crossing, out Hit hi
       t0 = t1;
     }
     t1 = SmallerOf(t1, end);
-    if (crossed && IntersectCell(PathThrough(ray, at, t0, t1), w, hit))
+    if (crossed && IntersectCell(PathThrough(ray, at, t0, t1), CornersOf(at.Cell, w), hit))
     {
       return true;
     }

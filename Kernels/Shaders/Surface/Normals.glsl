@@ -74,7 +74,7 @@ uint HiddenAround(ivec3 cell)
   for (int i = 0; i < 27; ++i)
   {
     ivec3 other = clamp(cell + ivec3(i % 3, i / 3 % 3, i / 9) - 1, ivec3(0), volume.Samples - 2);
-    around |= Hides(HiddenInSlot(FoundSlot(first, BlockOf(other))), other) ? 1u << i : 0u;
+    around |= HoldsCell(HiddenInSlot(FoundSlot(first, BlockOf(other))), other) ? 1u << i : 0u;
   }
   return around;
 }

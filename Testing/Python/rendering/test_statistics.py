@@ -229,14 +229,16 @@ def needs(volume, lit=True, **settings):
 def test_a_small_volume_needs_no_cache(volume):
     """Decoded as a whole it needs no stream, no block map, no waiting rays, and one pass."""
     buffers, stages = needs(volume)
-    assert set(buffers) == ALWAYS | {"normals"}
+    assert set(buffers) == ALWAYS | {"normals", "cache_cell_marks"}
     assert buffers["cache_values"] == 256 * BLOCKS
+    assert buffers["cache_cell_marks"] == 8 * BLOCKS
     assert buffers["macrocells"] == 136 * MACROCELLS
     assert buffers["block_marks"] == 8 * MACROCELLS
     assert stages == {
         "DecodeBlocks",
         "BlockRanges",
         "MarkBlocks",
+        "MarkCells",
         "PlanPass",
         "CastRays",
         "FinishHits",
