@@ -284,6 +284,12 @@ public:
   ///@}
 
   /**
+   * Reads the inputs, and compresses plain ones, as the next Render() would do otherwise. Returns
+   * false, with an error event as from Render(), if they cannot be drawn.
+   */
+  bool UpdateInputs();
+
+  /**
    * What the present image has cost so far.
    */
   vtkProgressiveIsosurfaceStatistics* GetStatistics();
@@ -383,7 +389,6 @@ private:
   ArrayChoice MakeArrayChoice();
   void WarnOfDoubts(vtkVolumeProperty* property);
   void WarnOfTightBudget();
-  bool UpdateInputs();
   bool UpdateColors(vtkImageData* image);
   bool BindWindow(vtkOpenGLRenderWindow* window);
   bool UpdateScene(vtkRenderer* renderer, vtkVolume* volume);

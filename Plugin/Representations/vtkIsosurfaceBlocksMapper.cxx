@@ -108,11 +108,31 @@ double* vtkIsosurfaceBlocksMapper::GetBounds()
 }
 
 //------------------------------------------------------------------------------
+bool vtkIsosurfaceBlocksMapper::UpdateInputs()
+{
+  if (this->GetNumberOfInputConnections(0) > 0)
+  {
+    this->Update();
+  }
+  this->UpdateMappers();
+  bool all = true;
+  for (const auto& mapper : this->Mappers)
+  {
+    all = mapper->UpdateInputs() && all;
+  }
+  return all;
+}
+
+//------------------------------------------------------------------------------
 void vtkIsosurfaceBlocksMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
 {
   this->NumberOfDrawn = 0;
-  this->UpdateMappers(renderer->GetRenderWindow());
-  this->UpdateSettings(this->FindTime(renderer->GetRenderWindow()));
+  this->UpdateMappers();
+  const double seconds = this->FindTime(renderer->GetRenderWindow());
+  for (const auto& mapper : this->Mappers)
+  {
+    mapper->SetTimeAllowance(seconds / static_cast<double>(this->Mappers.size()));
+  }
   for (std::size_t block : this->FindOrder(renderer, volume))
   {
     this->Mappers[block]->Render(renderer, volume);
@@ -124,12 +144,12 @@ void vtkIsosurfaceBlocksMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
 }
 
 //------------------------------------------------------------------------------
-void vtkIsosurfaceBlocksMapper::UpdateMappers(vtkWindow* window)
+void vtkIsosurfaceBlocksMapper::UpdateMappers()
 {
   const Images images = FindImages(this->GetInputDataObject(0, 0));
   for (std::size_t i = images.size(); i < this->Mappers.size(); ++i)
   {
-    this->Mappers[i]->ReleaseGraphicsResources(window);
+    this->Mappers[i]->ReleaseGraphicsResources(nullptr); // of whatever window
   }
   this->Mappers.resize(images.size());
   for (std::size_t i = 0; i < images.size(); ++i)
@@ -150,6 +170,7 @@ void vtkIsosurfaceBlocksMapper::UpdateMappers(vtkWindow* window)
       this->Mappers[i]->SetCompositeIndex(ImageBlocks::GetCompositeIndex(images[i]));
     }
   }
+  this->UpdateSettings();
 }
 
 //------------------------------------------------------------------------------
@@ -162,7 +183,7 @@ double vtkIsosurfaceBlocksMapper::FindTime(vtkRenderWindow* window)
 }
 
 //------------------------------------------------------------------------------
-void vtkIsosurfaceBlocksMapper::UpdateSettings(double seconds)
+void vtkIsosurfaceBlocksMapper::UpdateSettings()
 {
   this->Settings->SetClippingPlanes(this->ClippingPlanes);
   this->Settings->SetCropping(this->Cropping);
@@ -177,7 +198,6 @@ void vtkIsosurfaceBlocksMapper::UpdateSettings(double seconds)
   {
     mapper->CopySettings(this->Settings);
     mapper->SetMemoryShare(static_cast<double>(mapper->GetInput()->GetNumberOfPoints()) / samples);
-    mapper->SetTimeAllowance(seconds / static_cast<double>(this->Mappers.size()));
   }
 }
 

@@ -39,6 +39,9 @@ public:
     return this->Mappers;
   }
 
+  /// Prepares the inputs of all blocks for the next render; false: one of them cannot be drawn.
+  bool UpdateInputs();
+
   /// What a block's mapper has told last, and how many messages there were before and with it. The
   /// mappers do not print them. An error is empty once all blocks are drawn.
   struct Message
@@ -64,9 +67,10 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
 
 private:
-  /// Gives each image of the input a mapper. Those of images that have gone are released.
-  void UpdateMappers(vtkWindow* window);
-  void UpdateSettings(double seconds);
+  /// Gives each image of the input a mapper with the settings. Those of images that have gone are
+  /// released.
+  void UpdateMappers();
+  void UpdateSettings();
   /// The time of a render, for all blocks. A still one is completed at once but in ParaView's own
   /// window: a Python program's may have no event loop, which would go on with it.
   double FindTime(vtkRenderWindow* window);

@@ -97,6 +97,13 @@ int vtkProgressiveIsosurfaceRepresentation::ProcessViewRequest(
     }
     vtkPVRenderView::SetGeometryBounds(inInfo, this, this->DataBounds, this->Actor->GetMatrix());
   }
+  else if (requestType == vtkPVView::REQUEST_RENDER() &&
+    DistributedPieces::GetNumberOfProcesses() > 1)
+  {
+    // What one process cannot draw is drawn by none, as if it were one: no half of a surface shows.
+    const bool good = !this->CanDraw || this->GetBlocksMapper()->UpdateInputs();
+    this->Actor->SetVisibility(!DistributedPieces::IsTrueAnywhere(!good) && this->CanDraw);
+  }
   return 1;
 }
 
