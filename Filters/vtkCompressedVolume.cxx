@@ -8,6 +8,7 @@
 #include "Codec/MacrocellErrors.h"
 #include "Codec/SampleSummary.h"
 #include "Format/CompressedVolumeFormat.h"
+#include "Format/StreamArray.h"
 #include "Pieces/PieceExtents.h"
 #include "Status.h"
 
@@ -125,6 +126,18 @@ void vtkCompressedVolume::Remove(vtkDataObject* object)
 }
 
 //------------------------------------------------------------------------------
+bool vtkCompressedVolume::Place(vtkImageData* image)
+{
+  return CompressedVolumeFormat::Place(image).IsOk();
+}
+
+//------------------------------------------------------------------------------
+void vtkCompressedVolume::SpeedUpRanges(vtkDataObject* object)
+{
+  CompressedVolumeFormat::SpeedUpRanges(object);
+}
+
+//------------------------------------------------------------------------------
 bool vtkCompressedVolume::IsEmptyPiece(vtkInformation* input)
 {
   return PieceExtents::IsEmptyPiece(input);
@@ -164,7 +177,7 @@ void vtkCompressedVolume::Crop(const int own[6])
     first[axis] = (kept[2 * axis] - this->Extent[2 * axis]) / BlockSide;
     count[axis] = BlocksAlong(dims[axis]);
   }
-  vtkNew<vtkUnsignedCharArray> stream;
+  vtkNew<StreamArray> stream;
   stream->SetNumberOfValues(StreamBytesFor(dims, this->BlockBits));
   this->CopyBlocks(first, count, stream);
   int blocks[3];

@@ -19,6 +19,8 @@
  * - ProgIso.ZFP.Component (int): component of the original array, or -1: its magnitude
  * - ProgIso.ZFP.Association (int): 0 point data, 1 cell data
  * - ProgIso.ZFP.Extent (6 integers, optional): the image extent that the stream covers
+ * - ProgIso.ZFP.Grid (15 doubles, optional): spacing, origin and direction matrix (row by row) of
+ *   the image that has this extent
  * - ProgIso.ZFP.HiddenSamples, ProgIso.ZFP.HiddenCells (pairs of unsigned 64-bit integers,
  *   optional): what is hidden, as runs of blocks (first block, bits), see vtkBlockMask
  * - ProgIso.ZFP.Offset, ProgIso.ZFP.Scale (double, optional, default 0 and 1): the units of the
@@ -33,13 +35,18 @@
  *   ProgIso.ZFP.* but this and the stream, by the bytes of their names: name, 0, number of values
  *   as text, 0, values as 64-bit integers or doubles (little-endian), or texts with 0
  *
+ * What the image's own ghost arrays (vtkGhostType) hide is hidden, too: filters may have blanked
+ * it.
+ *
  * Hidden samples have no values: their stored values are undefined. There is no isosurface in a
  * cell of the interpolant that has a hidden corner, or that is itself hidden.
  *
  * The stream covers the image, or a larger extent: that is so for a piece of an image that several
  * processes share, and for a subset cut out of an image. What lies beyond the image is not part of
- * it, but its samples (ghost samples) serve to interpolate and shade at the image's faces. Without
- * Extent, or if the image has the stream's size, the stream covers the image exactly.
+ * it, but its samples (ghost samples) serve to interpolate and shade at the image's faces. Filters
+ * pass field data on, also those that resample the image or move it: by the grid Read() tells
+ * whether the image still has samples of the stream, perhaps by other indices, and refuses others.
+ * Without Grid or Extent, and if the image has the stream's size, the stream covers the image.
  *
  * The stream is zfp's (codec 5) for a 3-D float32 array, without zfp's header: blocks in x-fastest
  * order, block i at bit i*BlockBits (bits count from the least significant one of 64-bit
@@ -167,6 +174,21 @@ public:
    * Removes the arrays that Write() stores from the field data of any object.
    */
   static void Remove(vtkDataObject* object);
+
+  /**
+   * Says that the samples lie where the image does now, after a change of its spacing, origin,
+   * directions or extent: Read() cannot tell whether its samples moved along, and refuses it. False
+   * for an image that has no stream, or only a part of what its stream covers.
+   */
+  static bool Place(vtkImageData* image);
+
+  /**
+   * Gives a stream, such as a reader has read, an array on the same memory whose range is known at
+   * once. VTK looks at every byte of a usual array, some 20 ns long, if a program asks for its
+   * range, as ParaView does. What this module makes has such an array already. Does nothing to
+   * other objects, which may be null.
+   */
+  static void SpeedUpRanges(vtkDataObject* object);
 
   /**
    * What is wrong with the image of the last Read(), as the end of the sentence "The input is ...";

@@ -7,6 +7,7 @@
 #include "Codec/BlockStream.h"
 #include "Codec/Magnitude.h"
 #include "Codec/SampleEncoder.h"
+#include "Format/StreamArray.h"
 #include "Status.h"
 
 #include "vtkCellData.h"
@@ -44,7 +45,7 @@ struct vtkCompressedVolumeBuilder::Work
 
   int Dimensions[3];
   int BlockBits;
-  vtkNew<vtkUnsignedCharArray> Stream;
+  vtkNew<StreamArray> Stream;
   SampleEncoder Encoder;
   int Slices = 0; // encoded so far
   int ScalarType = VTK_VOID;
@@ -238,7 +239,10 @@ bool vtkCompressedVolumeBuilder::Finish(vtkImageData* image)
   }
   const std::unique_ptr<Work> work = std::move(this->Volume);
   const std::string name = this->ArrayName.empty() ? work->ArrayName : this->ArrayName;
-  image->SetDimensions(work->Dimensions);
+  if (!std::equal(work->Dimensions, work->Dimensions + 3, image->GetDimensions()))
+  {
+    image->SetDimensions(work->Dimensions);
+  }
   image->GetPointData()->Initialize();
   image->GetCellData()->Initialize();
   vtkNew<vtkCompressedVolume> volume;

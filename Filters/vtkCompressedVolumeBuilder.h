@@ -99,7 +99,8 @@ public:
 
   /**
    * Stores the compressed volume in an image when all slices have been added: sets its dimensions
-   * and field data, and empties its point and cell data; spacing, origin and direction matrix stay.
+   * and field data, and empties its point and cell data; spacing, origin and direction matrix stay,
+   * and its extent if it has the dimensions. To move it later, use vtkCompressedVolume::Place().
    * An error if all values are too small for zfp (below 2^-74, about 5e-23, in units of Scale).
    * Frees the builder's memory.
    */

@@ -8,6 +8,7 @@
 #include "Codec/Magnitude.h"
 #include "Codec/RateFinder.h"
 #include "Codec/SampleEncoder.h"
+#include "Format/StreamArray.h"
 #include "Pieces/CompressedPart.h"
 #include "Pieces/HidingFlags.h"
 #include "Pieces/PipelineRequests.h"
@@ -178,6 +179,7 @@ private:
   Status FindBlockBits(const int dims[3], const ChosenSamples& samples,
     const SampleEncoder& encoder, int& blockBits) const;
   Status Compress(const CompressedPart& part, vtkImageData* output) const;
+  void PassArrays(vtkImageData* output) const;
 
   vtkImageZFPCompress* Self;
   vtkInformationVector** InputVector;
@@ -321,7 +323,7 @@ Status vtkImageZFPCompress::Work::Compress(const CompressedPart& part, vtkImageD
     return status;
   }
   const vtkTypeInt64 bytes = vtkCompressedVolume::StreamBytesFor(dims, blockBits);
-  vtkNew<vtkUnsignedCharArray> stream;
+  vtkNew<StreamArray> stream;
   if (Status status = AllocateArray(stream.Get(), bytes, "the stream", dims); !status)
   {
     return Status::Error("There is ", status.GetMessage(), ".");
@@ -357,7 +359,33 @@ Status vtkImageZFPCompress::Work::Compress(const CompressedPart& part, vtkImageD
     part.Covered[4], part.Covered[5]);
   volume->SetStream(stream);
   volume->Write(output);
+  this->Self->OutputRate = volume->GetRate();
+  this->Self->OutputError = volume->GetLargestError();
+  if (this->Self->PassOtherArrays)
+  {
+    this->PassArrays(output);
+  }
   return {};
+}
+
+//------------------------------------------------------------------------------
+// Passes all arrays but the compressed one, and those that hide, which the stream's metadata tell.
+void vtkImageZFPCompress::Work::PassArrays(vtkImageData* output) const
+{
+  vtkNew<vtkImageData> own;
+  own->ShallowCopy(this->Input);
+  own->Crop(output->GetExtent());
+  for (const int association : { vtkDataObject::POINT, vtkDataObject::CELL })
+  {
+    vtkDataSetAttributes* const from = this->Input->GetAttributes(association);
+    vtkDataSetAttributes* const to = output->GetAttributes(association);
+    to->PassData(own->GetAttributes(association));
+    to->RemoveArray(vtkDataSetAttributes::GhostArrayName());
+    if (HasArray(from, this->Array))
+    {
+      to->RemoveArray(this->Array->GetName());
+    }
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -366,6 +394,8 @@ int vtkImageZFPCompress::RequestData(
 {
   vtkImageData* output = vtkImageData::GetData(outputVector);
   this->SetErrorCode(vtkErrorCode::NoError);
+  this->OutputRate = 0.0;
+  this->OutputError = -1.0;
   CopyWithoutArrays(vtkImageData::GetData(inputVector[0]), output);
   if (vtkCompressedVolume::IsEmptyPiece(inputVector[0]->GetInformationObject(0)))
   {
@@ -392,5 +422,8 @@ void vtkImageZFPCompress::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaskNonFinite: " << (this->MaskNonFinite ? "on\n" : "off\n");
   os << indent << "KeepLabels: " << (this->KeepLabels ? "on\n" : "off\n");
   os << indent << "Tolerance: " << this->Tolerance << "\n";
+  os << indent << "PassOtherArrays: " << (this->PassOtherArrays ? "on\n" : "off\n");
+  os << indent << "OutputRate: " << this->OutputRate << "\n";
+  os << indent << "OutputError: " << this->OutputError << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
 }

@@ -7,7 +7,8 @@
  * Converts one component of a point or cell array of a vtkImageData, of any scalar type, or the
  * magnitude of its vectors, to float32 and compresses it. The output is a compressed volume (see
  * vtkCompressedVolume): a vtkImageData with the same extent, spacing, origin and direction matrix,
- * no point or cell arrays, and the input's field data with the compressed stream and its metadata.
+ * no point or cell arrays unless PassOtherArrays is on, and the input's field data with the
+ * compressed stream and its metadata.
  *
  * If several processes share an image, each compresses its piece. Ghost cells are not in the
  * output's extent, but the stream covers as many of their samples as the piece needs to look the
@@ -122,6 +123,25 @@ public:
 
   ///@{
   /**
+   * Whether the output has the input's other point and cell arrays, uncompressed; vtkZFPContour
+   * carries those of points on to its surface. Default off.
+   */
+  vtkSetMacro(PassOtherArrays, bool);
+  vtkGetMacro(PassOtherArrays, bool);
+  vtkBooleanMacro(PassOtherArrays, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Rate of the last output, in bits per sample, and the largest error of its samples, in their own
+   * units; 0 and -1 without one.
+   */
+  vtkGetMacro(OutputRate, double);
+  vtkGetMacro(OutputError, double);
+  ///@}
+
+  ///@{
+  /**
    * Threads that encode; 0, the default, takes all that OpenMP offers (OMP_NUM_THREADS).
    */
   vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
@@ -150,6 +170,9 @@ private:
   bool MaskNonFinite = true;
   bool KeepLabels = false;
   double Tolerance = 0.0;
+  bool PassOtherArrays = false;
+  double OutputRate = 0.0;
+  double OutputError = -1.0;
   int NumberOfThreads = 0;
 };
 

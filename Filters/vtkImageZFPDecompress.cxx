@@ -20,6 +20,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -71,16 +72,23 @@ void RemoveUnfitGhosts(vtkDataSetAttributes* attributes, vtkIdType number)
 }
 
 //------------------------------------------------------------------------------
-// Gives the output the extent of the stream, in which the samples around a piece are ghosts.
-void SetOutputExtent(vtkCompressedVolume* volume, int piece[6], vtkImageData* output)
+// Gives the output the extent of the stream; the samples around a process' piece are ghosts.
+void SetOutputExtent(vtkCompressedVolume* volume, int piece[6], bool isPiece, vtkImageData* output)
 {
   output->SetExtent(volume->GetExtent());
   RemoveUnfitGhosts(output->GetPointData(), output->GetNumberOfPoints());
   RemoveUnfitGhosts(output->GetCellData(), output->GetNumberOfCells());
-  if (!std::equal(piece, piece + 6, volume->GetExtent()))
+  if (isPiece && !std::equal(piece, piece + 6, volume->GetExtent()))
   {
     output->GenerateGhostArray(piece);
   }
+}
+
+//------------------------------------------------------------------------------
+// Whether several processes share the image, of which the input is a piece.
+bool IsPiece(vtkInformation* input)
+{
+  return input->Get(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
 }
 
 //------------------------------------------------------------------------------
@@ -233,12 +241,17 @@ int vtkImageZFPDecompress::RequestData(
   int piece[6];
   input->GetExtent(piece);
   volume->Crop(piece);
-  SetOutputExtent(volume, piece, output);
+  const bool isPiece = IsPiece(inputVector[0]->GetInformationObject(0));
+  SetOutputExtent(volume, piece, isPiece, output);
   vtkSmartPointer<vtkDataArray> samples;
   const Status status = DecodeSamples(volume, this->NumberOfThreads, ProgressOf(this), samples);
   if (status)
   {
     SetOutputSamples(volume, samples, output);
+    if (!isPiece)
+    {
+      output->Crop(piece); // a subset has no samples around it
+    }
   }
   else if (!status.IsAborted())
   {

@@ -9,7 +9,8 @@
  * scalars, with the original name and association (point or cell data). Its values are float32, and
  * bit for bit those of libzfp's zfp_decompress(); or doubles if the stream has custom units. Blocks
  * are decoded in parallel with OpenMP. Hidden samples are NaN, and hidden points or cells are
- * flagged in ghost arrays.
+ * flagged in ghost arrays. Of a piece that several processes have of an image, the output also has
+ * the samples around it that the stream covers, marked as ghosts.
  *
  * Errors, one message and an output without array: an input that is not a compressed volume, or
  * whose metadata or stream is inconsistent (see vtkCompressedVolume::Read); too little memory.

@@ -5,6 +5,7 @@
 #include "Contour/BrickContour.h"
 #include "Contour/BrickRanges.h"
 #include "Contour/Bricks.h"
+#include "Contour/OtherArrays.h"
 #include "Contour/PartExtractor.h"
 #include "Contour/SurfaceJoiner.h"
 #include "Contour/SurfaceParts.h"
@@ -27,6 +28,7 @@
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSMPTools.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -69,6 +71,38 @@ vtkSmartPointer<vtkImageData> MakeSampleGeometry(vtkImageData* image, vtkCompres
     geometry->SetOrigin(origin);
   }
   return geometry;
+}
+
+//------------------------------------------------------------------------------
+// Finds the cells between samples that are contoured, and whether some of them are ghosts: those of
+// the image, and where it is a piece of one that several processes share, the requested levels
+// around it. `samples` is the extent of the stream's samples. Of cell data, the cells behind an
+// image's last samples belong to it where another process has the next samples.
+Bricks::Box FindCells(vtkCompressedVolume* volume, const int own[6], vtkInformation* inputInfo,
+  vtkInformation* outputInfo, const int samples[6], bool& hasGhosts)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  const bool isPiece = inputInfo->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
+  const int levels = isPiece ? outputInfo->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()) : 0;
+  int whole[6];
+  std::copy_n(own, 6, whole);
+  if (isPiece && inputInfo->Has(Pipeline::WHOLE_EXTENT()))
+  {
+    inputInfo->Get(Pipeline::WHOLE_EXTENT(), whole);
+  }
+  const int fewer = volume->GetAssociation() == vtkCompressedVolume::CellData ? 2 : 1;
+  Bricks::Box cells;
+  hasGhosts = false;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int low = 2 * axis, high = low + 1, start = samples[low];
+    const int first = std::max({ own[low] - levels, whole[low], start });
+    const int last = std::min({ own[high] - 1 + levels, whole[high] - fewer, samples[high] - 1 });
+    hasGhosts = hasGhosts || first < own[low] || last > own[high] - 1;
+    cells.First[axis] = first - start;
+    cells.Last[axis] = last - start;
+  }
+  return cells;
 }
 
 //------------------------------------------------------------------------------
@@ -191,7 +225,10 @@ int vtkZFPContour::RequestData(
     this->SetErrorCode(vtkErrorCode::UserError);
     return 1; // the executive need not add a message of its own
   }
-  RunWithThreads(this->NumberOfThreads, [&]() { this->ContourVolume(input, volume, output); });
+  vtkInformation* const inputInfo = inputVector[0]->GetInformationObject(0);
+  vtkInformation* const outputInfo = outputVector->GetInformationObject(0);
+  RunWithThreads(this->NumberOfThreads,
+    [&]() { this->ContourVolume(input, volume, inputInfo, outputInfo, output); });
   return 1;
 }
 
@@ -203,8 +240,8 @@ std::vector<double> vtkZFPContour::GetIsovalues()
 }
 
 //------------------------------------------------------------------------------
-void vtkZFPContour::ContourVolume(
-  vtkImageData* input, vtkCompressedVolume* volume, vtkPolyData* output)
+void vtkZFPContour::ContourVolume(vtkImageData* input, vtkCompressedVolume* volume,
+  vtkInformation* inputInfo, vtkInformation* outputInfo, vtkPolyData* output)
 {
   const auto geometry = MakeSampleGeometry(input, volume);
   const int* const extent = geometry->GetExtent();
@@ -216,6 +253,10 @@ void vtkZFPContour::ContourVolume(
   contour.ComputeNormals = this->ComputeNormals;
   contour.ComputeGradients = this->ComputeGradients;
   contour.Hidden = hidden.IsEmpty() ? nullptr : &hidden;
+  int own[6];
+  vtkCompressedVolume::GetOwnExtent(input, own);
+  bool hasGhosts = false;
+  contour.Cells = FindCells(volume, own, inputInfo, outputInfo, extent, hasGhosts);
   const std::vector<double> isovalues = this->GetIsovalues();
   std::vector<double> stored(isovalues.size()); // in the stream's units
   std::transform(isovalues.begin(), isovalues.end(), stored.begin(),
@@ -235,10 +276,19 @@ void vtkZFPContour::ContourVolume(
   const std::string name = volume->GetArrayName();
   SurfaceJoiner(contour, parts)
     .Join(output, this->ComputeScalars ? name.c_str() : nullptr, isovalues);
-  if (!volume->Covers(input))
+  if (hasGhosts)
   {
-    MarkGhosts(output, input->GetExtent(), extent);
+    MarkGhosts(output, own, extent);
   }
+  int samples[6];
+  std::copy_n(input->GetExtent(), 6, samples);
+  const bool ofCells = volume->GetAssociation() == vtkCompressedVolume::CellData;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    samples[2 * axis + 1] -= ofCells ? 1 : 0;
+  }
+  OtherArrays::Interpolate(
+    input->GetAttributes(ofCells ? vtkDataObject::CELL : vtkDataObject::POINT), samples, output);
   vtkImageTransform::TransformPointSet(geometry, output);
   TurnOutward(geometry, output);
   this->UpdateProgress(1.0);

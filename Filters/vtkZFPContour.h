@@ -19,12 +19,17 @@
  * its range (8 bytes a brick). While the input stays the same, later updates, such as with other
  * isovalues, decode only the bricks that contain an isovalue.
  *
+ * Other arrays of the input, of points, or of cells if the compressed one is, are interpolated at
+ * the surface's points.
+ *
  * The samples of cell data lie in the centres of cells. The input's field data, without the
  * compressed stream, are passed on. Points are float32, as those of vtkFlyingEdges3D. There is no
  * array to choose, because a compressed volume has only one.
  *
- * For a piece of a volume, whose stream covers samples around it, the output also has the triangles
- * beyond the piece, which belong to other pieces, marked as ghost cells (vtkGhostType).
+ * Of a subset of a volume, whose stream covers samples around it, the output has the subset's
+ * triangles. Where several processes have pieces of a volume, each has the triangles of its own,
+ * and as many ghost levels around, marked as ghost cells (vtkGhostType), as are requested. Normals
+ * and gradients also use the samples beyond.
  *
  * vtkSMPTools contours bricks in parallel. The thread that updates the filter reports progress, and
  * notices an abort, after which the output is empty.
@@ -169,7 +174,8 @@ private:
   void operator=(const vtkZFPContour&) = delete;
 
   std::vector<double> GetIsovalues();
-  void ContourVolume(vtkImageData* input, vtkCompressedVolume* volume, vtkPolyData* output);
+  void ContourVolume(vtkImageData* input, vtkCompressedVolume* volume, vtkInformation* inputInfo,
+    vtkInformation* outputInfo, vtkPolyData* output);
 
   vtkNew<vtkContourValues> ContourValues;
   vtkTypeBool ComputeNormals = true;

@@ -4,6 +4,7 @@
 
 #include "Codec/BlockStream.h"
 #include "Codec/SampleSummary.h"
+#include "Format/StreamArray.h"
 #include "Format/ZFPFile.h"
 #include "Status.h"
 
@@ -15,7 +16,8 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include "vtkUnsignedCharArray.h"
+
+#include <filesystem>
 
 vtkStandardNewMacro(vtkZFPReader);
 
@@ -46,7 +48,7 @@ Status FindRange(const ZFPFile& file, vtkUnsignedCharArray* stream,
 Status ReadVolume(
   const ZFPFile& file, const ProgressCallback& progress, vtkCompressedVolume* volume)
 {
-  vtkNew<vtkUnsignedCharArray> stream;
+  vtkNew<StreamArray> stream;
   if (Status status = file.ReadStream(stream); !status)
   {
     return status;
@@ -81,14 +83,24 @@ vtkZFPReader::~vtkZFPReader()
 }
 
 //------------------------------------------------------------------------------
-int vtkZFPReader::CanReadFile(const char* fileName)
+bool vtkZFPReader::HasReadableHeader(const char* fileName)
 {
   const int none[3] = { 0, 0, 0 };
-  return ZFPFile().Open(fileName, none, this->Rate) ? 1 : 0;
+  return ZFPFile().Open(fileName, none, this->Rate).IsOk();
 }
 
 //------------------------------------------------------------------------------
-// Shows an error once, though the pipeline asks twice (for information, then for data).
+int vtkZFPReader::CanReadFile(const char* fileName)
+{
+  const std::filesystem::path path(fileName ? fileName : "");
+  std::error_code ignored;
+  const bool isNamed =
+    path.extension() == ".zfp" && std::filesystem::is_regular_file(path, ignored);
+  return isNamed || this->HasReadableHeader(fileName) ? 1 : 0;
+}
+
+//------------------------------------------------------------------------------
+// Shows an error once, though the pipeline asks again for data that did not come.
 void vtkZFPReader::ShowError(const std::string& error)
 {
   if (error != this->ShownError)
@@ -100,6 +112,8 @@ void vtkZFPReader::ShowError(const std::string& error)
 }
 
 //------------------------------------------------------------------------------
+// Announces an empty image if the file cannot be opened; RequestData() says why. Until then
+// dimensions and rate may come, as in ParaView's panel.
 int vtkZFPReader::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
@@ -107,16 +121,12 @@ int vtkZFPReader::RequestInformation(
   this->ShownError.clear();
   this->SetErrorCode(vtkErrorCode::NoError);
   ZFPFile file;
-  if (Status status = file.Open(this->FileName, this->DataDimensions, this->Rate))
+  if (file.Open(this->FileName, this->DataDimensions, this->Rate))
   {
     for (int axis = 0; axis < 3; ++axis)
     {
       extent[2 * axis + 1] = file.GetDimensions()[axis] - 1;
     }
-  }
-  else
-  {
-    this->ShowError(status.GetMessage());
   }
   vtkInformation* out = outputVector->GetInformationObject(0);
   out->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);

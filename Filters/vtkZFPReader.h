@@ -42,10 +42,15 @@ public:
   ///@}
 
   /**
-   * Returns 1 if this reader can read the file and it has zfp's header, else 0. Files without
-   * header cannot be recognised.
+   * Returns 1 for a file that has a header that this reader can read, and for any other whose name
+   * ends with ".zfp": it may be without header, which cannot be told from its bytes. Else 0.
    */
   int CanReadFile(const char* fileName);
+
+  /**
+   * Whether a file has zfp's header, and this reader can read what that tells.
+   */
+  bool HasReadableHeader(const char* fileName);
 
   ///@{
   /**

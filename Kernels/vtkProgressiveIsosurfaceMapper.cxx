@@ -113,10 +113,9 @@ void vtkProgressiveIsosurfaceMapper::SetColorInputData(vtkImageData* image)
 
 void vtkProgressiveIsosurfaceMapper::SetRate(double rate)
 {
-  const double clamped = std::min(std::max(rate, 9.0 / 64.0), 32.0);
-  if (this->Rate != clamped || this->KeepLabels)
+  if (this->Rate != rate || this->KeepLabels)
   {
-    this->Rate = clamped;
+    this->Rate = rate;
     this->KeepLabels = false;
     this->Modified();
   }

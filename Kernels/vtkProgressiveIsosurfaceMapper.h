@@ -75,8 +75,9 @@ public:
 
   ///@{
   /**
-   * Rate in bits per voxel at which plain input is compressed, 9/64 … 32. Default 8. Compressed
-   * input keeps its rate. SetRate() switches KeepLabels off: what is asked for is taken.
+   * Rate in bits per voxel at which plain input is compressed, above 0 and at most 32; others are
+   * an error, as of vtkImageZFPCompress. Default 8. Compressed input keeps its rate. SetRate()
+   * switches KeepLabels off: what is asked for is taken.
    */
   virtual void SetRate(double rate);
   vtkGetMacro(Rate, double);

@@ -10,6 +10,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkImageData
 
 from ._typing import Array
+from .vtkProgIsoFilters import vtkCompressedVolume
 
 #: Name of the array that hides points or cells.
 GHOSTS = "vtkGhostType"  # vtkDataSetAttributes::GhostArrayName()
@@ -218,6 +219,7 @@ def set_axes(image: vtkImageData, axes: npt.ArrayLike, origin: npt.ArrayLike) ->
     image.SetSpacing(*spacing)
     image.SetOrigin(*origin)
     image.SetDirectionMatrix(*direction.ravel())
+    vtkCompressedVolume.Place(image)  # where it is one, its samples move along
 
 
 def axes_of(image: vtkImageData) -> npt.NDArray[np.float64]:

@@ -62,6 +62,28 @@ vtkSmartPointer<vtkPolyData> Triangulate(vtkImageData* classes)
 }
 
 //------------------------------------------------------------------------------
+BrickContour::BrickContour(const Bricks& bricks, const int extentStart[3])
+  : AllBricks(bricks)
+  , ExtentStart{ extentStart[0], extentStart[1], extentStart[2] }
+{
+  const int* const dims = bricks.GetDimensions();
+  this->Cells = { { 0, 0, 0 }, { dims[0] - 2, dims[1] - 2, dims[2] - 2 } };
+}
+
+//------------------------------------------------------------------------------
+// A brick owns points of its neighbours' triangles where they touch.
+bool BrickContour::Touches(vtkIdType brick) const
+{
+  const Bricks::Box box = this->AllBricks.GetBox(brick);
+  const auto touches = [&](int axis)
+  {
+    return box.First[axis] <= this->Cells.Last[axis] + 1 &&
+      this->Cells.First[axis] <= box.Last[axis];
+  };
+  return touches(0) && touches(1) && touches(2);
+}
+
+//------------------------------------------------------------------------------
 std::unique_ptr<BrickContour::Part> BrickContour::Extract(
   vtkIdType brick, const Bricks::Samples& samples, double isovalue) const
 {
@@ -69,6 +91,7 @@ std::unique_ptr<BrickContour::Part> BrickContour::Extract(
   auto part = std::make_unique<Part>();
   part->Brick = brick;
   const std::vector<int> numbers = this->AddPoints(surface, samples, isovalue, *part);
+  const bool contoursAll = this->ContoursAll();
   vtkCellArray* const triangles = surface->GetPolys();
   part->Corners.reserve(3 * triangles->GetNumberOfCells());
   const auto iterator = vtk::TakeSmartPointer(triangles->NewIterator());
@@ -77,7 +100,7 @@ std::unique_ptr<BrickContour::Part> BrickContour::Extract(
     vtkIdType size = 0;
     const vtkIdType* corners = nullptr;
     iterator->GetCurrentCell(size, corners);
-    if (this->Hidden && !this->IsInVisibleCell(surface, corners, this->AllBricks.GetBox(brick)))
+    if (!contoursAll && !this->IsInContouredCell(surface, corners, this->AllBricks.GetBox(brick)))
     {
       continue;
     }
@@ -109,6 +132,7 @@ std::vector<int> BrickContour::AddPoints(
   vtkPolyData* surface, const Bricks::Samples& samples, double isovalue, Part& part) const
 {
   const Bricks::Box box = this->AllBricks.GetBox(part.Brick);
+  const bool contoursAll = this->ContoursAll();
   std::vector<int> numbers(surface->GetNumberOfPoints());
   part.Points.reserve(3 * numbers.size());
   part.Normals.reserve(this->ComputeNormals ? 3 * numbers.size() : 0);
@@ -118,9 +142,10 @@ std::vector<int> BrickContour::AddPoints(
     double middle[3];
     surface->GetPoint(i, middle);
     const EdgePlace place = FindPlace(middle, box);
-    if (this->Hidden && !this->IsVisible(place))
+    const auto isContoured = [this](const int cell[3]) { return this->IsContoured(cell); };
+    if (!contoursAll && !this->IsAnyCellAround(place, isContoured))
     {
-      continue; // no visible triangle has this corner
+      continue; // no triangle that is kept has this corner
     }
     const Edge edge = this->GetEdge(place);
     if (this->AllBricks.FindOwner(place.Sample) != part.Brick)
@@ -182,8 +207,30 @@ bool BrickContour::IsHidden(const int cell[3]) const
 }
 
 //------------------------------------------------------------------------------
-// Whether any of the cells around an edge is visible.
-bool BrickContour::IsVisible(const EdgePlace& place) const
+bool BrickContour::IsContoured(const int cell[3]) const
+{
+  const auto isWithin = [&](int axis)
+  { return this->Cells.First[axis] <= cell[axis] && cell[axis] <= this->Cells.Last[axis]; };
+  return isWithin(0) && isWithin(1) && isWithin(2) && !(this->Hidden && this->IsHidden(cell));
+}
+
+//------------------------------------------------------------------------------
+// Whether all cells are contoured, so that none need be looked at.
+bool BrickContour::ContoursAll() const
+{
+  bool all = !this->Hidden;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    all = all && this->Cells.First[axis] <= 0 &&
+      this->Cells.Last[axis] >= this->AllBricks.GetDimensions()[axis] - 2;
+  }
+  return all;
+}
+
+//------------------------------------------------------------------------------
+// Whether a predicate is true of any of the cells around an edge.
+template <typename Predicate>
+bool BrickContour::IsAnyCellAround(const EdgePlace& place, Predicate predicate) const
 {
   const int* const dims = this->AllBricks.GetDimensions();
   for (int side = 0; side < 4; ++side)
@@ -192,7 +239,7 @@ bool BrickContour::IsVisible(const EdgePlace& place) const
     cell[(place.Axis + 1) % 3] -= side & 1;
     cell[(place.Axis + 2) % 3] -= side >> 1;
     const auto exists = [&](int axis) { return cell[axis] >= 0 && cell[axis] + 1 < dims[axis]; };
-    if (exists(0) && exists(1) && exists(2) && !this->IsHidden(cell))
+    if (exists(0) && exists(1) && exists(2) && predicate(cell))
     {
       return true;
     }
@@ -201,9 +248,9 @@ bool BrickContour::IsVisible(const EdgePlace& place) const
 }
 
 //------------------------------------------------------------------------------
-// Whether a triangle belongs to a visible cell. Its corners are middles of a cell's edges, so that
-// its centre lies in the cell, or, rarely, in the face between two cells.
-bool BrickContour::IsInVisibleCell(
+// Whether a triangle belongs to a cell that is contoured. Its corners are middles of a cell's
+// edges, so that its centre lies in the cell, or, rarely, in the face between two cells.
+bool BrickContour::IsInContouredCell(
   vtkPolyData* surface, const vtkIdType corners[3], const Bricks::Box& box) const
 {
   const int* const dims = this->AllBricks.GetDimensions();
@@ -221,7 +268,7 @@ bool BrickContour::IsInVisibleCell(
     high[axis] = std::min(box.First[axis] + sixths / 6, dims[axis] - 2);
     low[axis] = sixths % 6 == 0 && sixths > 0 ? box.First[axis] + sixths / 6 - 1 : high[axis];
   }
-  return !this->IsHidden(high) || !this->IsHidden(low);
+  return this->IsContoured(high) || this->IsContoured(low);
 }
 
 //------------------------------------------------------------------------------
@@ -289,8 +336,9 @@ bool BrickContour::HasNeighbor(const int sample[3], int axis, int side) const
   const int next = sample[axis] + side;
   EdgePlace place = { { sample[0], sample[1], sample[2] }, axis };
   place.Sample[axis] = std::min(next, sample[axis]);
+  const auto isVisible = [this](const int cell[3]) { return !this->IsHidden(cell); };
   return next >= 0 && next < this->AllBricks.GetDimensions()[axis] &&
-    (!this->Hidden || this->IsVisible(place));
+    (!this->Hidden || this->IsAnyCellAround(place, isVisible));
 }
 
 //------------------------------------------------------------------------------

@@ -62,11 +62,7 @@ public:
   /**
    * Contours bricks of a volume whose first sample has these index coordinates.
    */
-  BrickContour(const Bricks& bricks, const int extentStart[3])
-    : AllBricks(bricks)
-    , ExtentStart{ extentStart[0], extentStart[1], extentStart[2] }
-  {
-  }
+  BrickContour(const Bricks& bricks, const int extentStart[3]);
 
   ///@{
   /**
@@ -81,6 +77,17 @@ public:
    * Cells without a surface, see vtkCompressedVolume::GetCellsWithoutSurface(); null: none.
    */
   const vtkBlockMask* Hidden = nullptr;
+
+  /**
+   * The cells that are contoured, by the samples that they begin at, both ends included. Default:
+   * all. Samples beyond still count for normals and gradients.
+   */
+  Bricks::Box Cells;
+
+  /**
+   * Whether a brick has such cells, or points of triangles in them.
+   */
+  bool Touches(vtkIdType brick) const;
 
   /**
    * Samples that are needed around a brick.
@@ -111,8 +118,11 @@ private:
   vtkIdType FindOwner(Edge edge) const;
   bool IsShared(const EdgePlace& place, const Bricks::Box& box) const;
   bool IsHidden(const int cell[3]) const;
-  bool IsVisible(const EdgePlace& place) const;
-  bool IsInVisibleCell(
+  bool IsContoured(const int cell[3]) const;
+  bool ContoursAll() const;
+  template <typename Predicate>
+  bool IsAnyCellAround(const EdgePlace& place, Predicate predicate) const;
+  bool IsInContouredCell(
     vtkPolyData* surface, const vtkIdType corners[3], const Bricks::Box& box) const;
   bool HasNeighbor(const int sample[3], int axis, int side) const;
   void AddPoint(

@@ -83,7 +83,7 @@ std::vector<vtkIdType> PartExtractor::FindBricks() const
   std::vector<vtkIdType> bricks;
   for (vtkIdType brick = 0; brick < this->AllBricks.GetNumberOfBricks(); ++brick)
   {
-    if (this->Ranges.MayContain(brick, this->Isovalues))
+    if (this->Contour.Touches(brick) && this->Ranges.MayContain(brick, this->Isovalues))
     {
       bricks.push_back(brick);
     }

@@ -5,6 +5,9 @@
 #include "Codec/MacrocellErrors.h"
 #include "Format/Checksums.h"
 #include "Format/FieldArrays.h"
+#include "Format/SampleGrid.h"
+#include "Format/StreamArray.h"
+#include "Pieces/HidingFlags.h"
 #include "Pieces/PieceExtents.h"
 
 #include "vtkBlockMask.h"
@@ -41,6 +44,7 @@ const char* const ArrayNameName = "ProgIso.ZFP.ArrayName";
 const char* const ComponentName = "ProgIso.ZFP.Component";
 const char* const AssociationName = "ProgIso.ZFP.Association";
 const char* const ExtentName = "ProgIso.ZFP.Extent";
+const char* const GridName = "ProgIso.ZFP.Grid";
 const char* const OffsetName = "ProgIso.ZFP.Offset";
 const char* const ScaleName = "ProgIso.ZFP.Scale";
 const char* const ErrorName = "ProgIso.ZFP.Error";
@@ -51,8 +55,8 @@ const char* const PageChecksumsName = "ProgIso.ZFP.PageChecksums";
 const char* const MetadataChecksumName = "ProgIso.ZFP.MetadataChecksum";
 
 const char* const AllNames[] = { VersionName, StreamName, BlockBitsName, DimensionsName, RangeName,
-  ScalarTypeName, ArrayNameName, ComponentName, AssociationName, ExtentName, OffsetName, ScaleName,
-  ErrorName, MacrocellErrorsName, HiddenSamplesName, HiddenCellsName, PageChecksumsName,
+  ScalarTypeName, ArrayNameName, ComponentName, AssociationName, ExtentName, GridName, OffsetName,
+  ScaleName, ErrorName, MacrocellErrorsName, HiddenSamplesName, HiddenCellsName, PageChecksumsName,
   MetadataChecksumName };
 
 // From this version of the format on, checksums are there; before, there were none.
@@ -192,15 +196,41 @@ bool Fits(const vtkTypeInt64 extent[6], const vtkTypeInt64 dims[3], bool cells)
 }
 
 //------------------------------------------------------------------------------
-// Sets the extent of the stream: the image's own, or if that has another size, the one that the
-// field data name.
-void ReadExtent(vtkImageData* image, const vtkTypeInt64 dims[3], Volume* volume)
+// Finds the extent of the stream by the image's indices, which filters and files may have shifted.
+Status FindShiftedExtent(vtkImageData* image, const vtkTypeInt64 named[6], vtkTypeInt64 extent[6])
 {
+  SampleGrid grid;
+  int shift[3];
+  Status status = GetReals(image->GetFieldData(), GridName, SampleGrid::Size, grid.Values);
+  if (status)
+  {
+    status = grid.FindShift(image, shift);
+  }
+  for (int i = 0; i < 6 && status; ++i)
+  {
+    extent[i] = named[i] - shift[i / 2];
+  }
+  return status;
+}
+
+//------------------------------------------------------------------------------
+// Sets the extent of the stream: the one that the field data name, if the image has the stream's
+// grid. Where no grid is known: the image's own, or if that has another size, the named one.
+Status ReadExtent(vtkImageData* image, const vtkTypeInt64 dims[3], Volume* volume)
+{
+  vtkFieldData* const fields = image->GetFieldData();
   const bool cells = IsCellData(volume);
   vtkTypeInt64 extent[6], named[6];
   std::copy_n(image->GetExtent(), 6, extent);
-  if (!Fits(extent, dims, cells) && GetIntegers(image->GetFieldData(), ExtentName, 6, named) &&
-    Fits(named, dims, cells))
+  const bool isNamed = GetIntegers(fields, ExtentName, 6, named) && Fits(named, dims, cells);
+  if (isNamed && fields->HasArray(GridName))
+  {
+    if (Status status = FindShiftedExtent(image, named, extent); !status)
+    {
+      return status;
+    }
+  }
+  else if (isNamed && !Fits(extent, dims, cells))
   {
     std::copy_n(named, 6, extent);
   }
@@ -208,6 +238,7 @@ void ReadExtent(vtkImageData* image, const vtkTypeInt64 dims[3], Volume* volume)
   std::transform(
     extent, extent + 6, bounds, [](vtkTypeInt64 bound) { return static_cast<int>(bound); });
   volume->SetExtent(bounds);
+  return {};
 }
 
 //------------------------------------------------------------------------------
@@ -259,7 +290,10 @@ Status ReadGeometry(vtkImageData* image, Volume* volume)
   {
     return status;
   }
-  ReadExtent(image, dims, volume);
+  if (Status status = ReadExtent(image, dims, volume); !status)
+  {
+    return status;
+  }
   for (int axis = 0; axis < 3; ++axis)
   {
     if (Status status = CheckAxis(axis, dims[axis], volume->GetExtent(), IsCellData(volume));
@@ -308,6 +342,25 @@ Status ReadStream(vtkImageData* image, Volume* volume)
 }
 
 //------------------------------------------------------------------------------
+// Returns an array that only looks like metadata, as filters make of two volumes' arrays when they
+// put both into one image; empty if there is none.
+std::string FindForeignArray(vtkFieldData* fields)
+{
+  for (int i = 0; i < fields->GetNumberOfArrays(); ++i)
+  {
+    const char* const given = fields->GetArrayName(i);
+    const std::string name = given ? given : "";
+    const bool isKnown =
+      std::find(std::begin(AllNames), std::end(AllNames), name) != std::end(AllNames);
+    if (name.rfind(StreamName, 0) == 0 && !isKnown)
+    {
+      return name;
+    }
+  }
+  return {};
+}
+
+//------------------------------------------------------------------------------
 // Checks that nothing of the metadata has changed. Comes after all that each array is checked for,
 // which says more on what is wrong.
 Status CheckMetadata(vtkImageData* image, Volume* volume)
@@ -325,6 +378,12 @@ Status CheckMetadata(vtkImageData* image, Volume* volume)
     return status;
   }
   volume->SetHasChecksums(true);
+  const std::string foreign = FindForeignArray(fields);
+  if (!foreign.empty())
+  {
+    return Status::Error("it has the stream of another volume, too (", foreign,
+      "): put volumes into one image before they are compressed, or decompress them first");
+  }
   return static_cast<vtkTypeInt64>(ChecksumOfMetadata(fields)) == expected
     ? Status()
     : Status::Error("its metadata (arrays of field data named ", Prefix,
@@ -423,6 +482,32 @@ Status ReadErrors(vtkImageData* image, Volume* volume)
 }
 
 //------------------------------------------------------------------------------
+// Adds what the image's own ghost arrays hide to the masks: filters may have blanked it since.
+void AddBlanking(vtkImageData* image, Volume* volume, vtkBlockMask& samples, vtkBlockMask& cells)
+{
+  vtkSmartPointer<vtkUnsignedCharArray> ofPoints = HidingFlags::FindForPoints(image);
+  vtkSmartPointer<vtkUnsignedCharArray> ofCells = HidingFlags::FindForCells(image);
+  int blocks[3];
+  volume->GetBlocks(blocks);
+  const int* const extent = volume->GetExtent();
+  const int* const imageExtent = image->GetExtent();
+  const auto add = [&](vtkBlockMask& mask, vtkUnsignedCharArray* flags, bool areOfCells)
+  {
+    if (flags)
+    {
+      mask = HidingFlags::AddToMask(mask, blocks, extent, flags, imageExtent, areOfCells);
+    }
+  };
+  if (IsCellData(volume))
+  {
+    add(samples, HidingFlags::MergeIntoCells(ofPoints, ofCells, imageExtent), true);
+    return;
+  }
+  add(samples, ofPoints, false);
+  add(cells, ofCells, true);
+}
+
+//------------------------------------------------------------------------------
 Status ReadHidden(vtkImageData* image, Volume* volume)
 {
   vtkFieldData* fields = image->GetFieldData();
@@ -441,6 +526,7 @@ Status ReadHidden(vtkImageData* image, Volume* volume)
     return Status::Error(
       HiddenCellsName, " is there, but of cell data samples are hidden, not cells");
   }
+  AddBlanking(image, volume, samples, cells);
   volume->SetHiddenSamples(samples);
   volume->SetHiddenCells(cells);
   return {};
@@ -499,6 +585,7 @@ void CompressedVolumeFormat::Write(vtkCompressedVolume* volume, vtkImageData* im
   StoreValue<vtkIntArray>(fields, ComponentName, volume->GetComponent());
   StoreValue<vtkIntArray>(fields, AssociationName, volume->GetAssociation());
   StoreValues<vtkIntArray>(fields, ExtentName, extent, 6);
+  StoreValues<vtkDoubleArray>(fields, GridName, SampleGrid::Of(image).Values, SampleGrid::Size);
   StoreValue<vtkStringArray>(fields, ArrayNameName, volume->GetArrayName());
   if (volume->HasUnits())
   {
@@ -520,6 +607,53 @@ void CompressedVolumeFormat::Write(vtkCompressedVolume* volume, vtkImageData* im
   volume->GetStream()->SetName(StreamName);
   fields->AddArray(volume->GetStream());
   StoreChecksums(volume, fields); // last: of what is there then
+}
+
+//------------------------------------------------------------------------------
+Status CompressedVolumeFormat::Place(vtkImageData* image)
+{
+  vtkTypeInt64 dims[3], extent[6];
+  int association = 0;
+  vtkFieldData* const fields = HasStream(image) ? image->GetFieldData() : nullptr;
+  if (!fields)
+  {
+    return Status::Error("it has no field data array ", StreamName);
+  }
+  for (const Status& status : { GetIntegers(fields, DimensionsName, 3, dims),
+         GetInteger(fields, AssociationName, Volume::PointData, Volume::CellData, association) })
+  {
+    if (!status)
+    {
+      return status;
+    }
+  }
+  std::copy_n(image->GetExtent(), 6, extent);
+  if (!Fits(extent, dims, association == Volume::CellData))
+  {
+    return Status::Error("it is a part of what its stream covers");
+  }
+  StoreValues<vtkIntArray>(fields, ExtentName, extent, 6);
+  StoreValues<vtkDoubleArray>(fields, GridName, SampleGrid::Of(image).Values, SampleGrid::Size);
+  if (fields->HasArray(MetadataChecksumName))
+  {
+    StoreValue<vtkTypeUInt32Array>(fields, MetadataChecksumName, ChecksumOfMetadata(fields));
+  }
+  image->Modified();
+  return {};
+}
+
+//------------------------------------------------------------------------------
+void CompressedVolumeFormat::SpeedUpRanges(vtkDataObject* object)
+{
+  vtkFieldData* const fields = HasStream(object) ? object->GetFieldData() : nullptr;
+  auto* const usual =
+    vtkArrayDownCast<vtkUnsignedCharArray>(fields ? fields->GetAbstractArray(StreamName) : nullptr);
+  if (usual && !dynamic_cast<StreamArray*>(usual))
+  {
+    vtkNew<StreamArray> stream;
+    stream->ShallowCopy(usual);
+    fields->AddArray(stream);
+  }
 }
 
 //------------------------------------------------------------------------------

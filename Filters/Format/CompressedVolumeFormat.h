@@ -24,6 +24,12 @@ Status Read(vtkImageData* image, vtkCompressedVolume* volume);
 /// Stores a volume in an image, in place of what is there.
 void Write(vtkCompressedVolume* volume, vtkImageData* image);
 
+/// Takes the image's place for that of the samples, see vtkCompressedVolume::Place().
+Status Place(vtkImageData* image);
+
+/// Gives a stream that a reader has read an array whose range is known at once.
+void SpeedUpRanges(vtkDataObject* object);
+
 /// Removes the arrays that Write() stores.
 void Remove(vtkDataObject* object);
 }

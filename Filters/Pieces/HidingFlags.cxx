@@ -42,6 +42,45 @@ unsigned char FlagsOfCorners(
 }
 
 //------------------------------------------------------------------------------
+// The flags of an image's points, or cells, by indices.
+class PlacedFlags
+{
+public:
+  PlacedFlags(vtkUnsignedCharArray* flags, const int extent[6], bool ofCells)
+    : Flags(flags)
+    , Hiding(ofCells ? HidingFlags::OfCells : HidingFlags::OfPoints)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->First[axis] = extent[2 * axis];
+      this->Size[axis] = extent[2 * axis + 1] - extent[2 * axis] + (ofCells ? 0 : 1);
+    }
+  }
+
+  // Whether the image has the point, or cell, and hides it.
+  bool Hides(const int index[3]) const
+  {
+    vtkIdType at[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      at[axis] = static_cast<vtkIdType>(index[axis]) - this->First[axis];
+      if (at[axis] < 0 || at[axis] >= this->Size[axis])
+      {
+        return false;
+      }
+    }
+    return this->Flags->GetValue(at[0] + this->Size[0] * (at[1] + this->Size[1] * at[2])) &
+      this->Hiding;
+  }
+
+private:
+  vtkUnsignedCharArray* Flags;
+  unsigned char Hiding;
+  int First[3];
+  vtkIdType Size[3];
+};
+
+//------------------------------------------------------------------------------
 // Returns a bit for each cell of the block whose lowest corner is given: whether it is hidden.
 vtkTypeUInt64 HiddenCellsOfBlock(
   vtkUnsignedCharArray* cells, const int size[3], int x, int y, int z)
@@ -94,6 +133,30 @@ vtkSmartPointer<vtkUnsignedCharArray> HidingFlags::MergeIntoCells(
     merged->SetValue(i, hides ? vtkDataSetAttributes::HIDDENCELL : 0);
   }
   return merged;
+}
+
+//------------------------------------------------------------------------------
+vtkBlockMask HidingFlags::AddToMask(const vtkBlockMask& mask, const int blocks[3],
+  const int streamExtent[6], vtkUnsignedCharArray* flags, const int imageExtent[6], bool ofCells)
+{
+  const PlacedFlags placed(flags, imageExtent, ofCells);
+  const vtkTypeInt64 row = blocks[0], slab = row * blocks[1], all = slab * blocks[2];
+  vtkBlockMask sum;
+  for (vtkTypeInt64 block = 0; block < all; ++block)
+  {
+    vtkTypeUInt64 bits = mask.Get(block);
+    const int start[3] = { streamExtent[0] + static_cast<int>(BlockSide * (block % row)),
+      streamExtent[2] + static_cast<int>(BlockSide * (block / row % blocks[1])),
+      streamExtent[4] + static_cast<int>(BlockSide * (block / slab)) };
+    for (int i = 0; i < BlockSamples; ++i)
+    {
+      const int index[3] = { start[0] + i % BlockSide, start[1] + i / BlockSide % BlockSide,
+        start[2] + i / BlockSlice };
+      bits |= static_cast<vtkTypeUInt64>(placed.Hides(index)) << i;
+    }
+    sum.Append(bits);
+  }
+  return sum;
 }
 
 //------------------------------------------------------------------------------

@@ -30,6 +30,11 @@ vtkUnsignedCharArray* FindForCells(vtkImageData* image);
 vtkSmartPointer<vtkUnsignedCharArray> MergeIntoCells(
   vtkUnsignedCharArray* points, vtkUnsignedCharArray* cells, const int extent[6]);
 
+/// Adds what an image's points, or cells, hide to a mask of a stream of so many blocks, which may
+/// reach beyond the image. Both extents are of points.
+vtkBlockMask AddToMask(const vtkBlockMask& mask, const int blocks[3], const int streamExtent[6],
+  vtkUnsignedCharArray* flags, const int imageExtent[6], bool ofCells);
+
 /// Returns the mask of the hidden cells between `size` samples per axis.
 vtkBlockMask MakeCellMask(vtkUnsignedCharArray* cells, const int size[3]);
 }

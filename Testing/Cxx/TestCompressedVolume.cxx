@@ -212,4 +212,87 @@ TEST(CompressedVolume, ReadAndWrite)
   volume->Print(text);
   EXPECT_TRUE(text.str().find("BlockBits: 173") != std::string::npos) << text.str();
 }
+
+//------------------------------------------------------------------------------
+// Whether an image is refused, with some words.
+void ExpectRefused(vtkImageData* image, const std::string& words)
+{
+  vtkNew<vtkCompressedVolume> volume;
+  EXPECT_FALSE(volume->Read(image)) << words;
+  EXPECT_TRUE(volume->GetErrorMessage().find(words) != std::string::npos)
+    << volume->GetErrorMessage();
+}
+
+// Field data come along with whatever becomes of an image: another grid is noticed.
+TEST(CompressedVolume, RefusesAnotherGrid)
+{
+  const auto shrunk = Compress(FloatImage({ 9, 9, 9 }));
+  shrunk->SetExtent(0, 4, 0, 4, 0, 4);
+  shrunk->SetSpacing(1.0, 4.0, 6.0);
+  ExpectRefused(shrunk, "moved or resampled");
+  const auto resampled = Compress(FloatImage(Size));
+  resampled->SetSpacing(0.4, 2.0, 3.0);
+  ExpectRefused(resampled, "spacing 0.5 2 3");
+  EXPECT_TRUE(vtkCompressedVolume::Place(resampled));
+  vtkNew<vtkCompressedVolume> volume;
+  EXPECT_TRUE(volume->Read(resampled)) << volume->GetErrorMessage();
+  EXPECT_TRUE(volume->Covers(resampled));
+}
+
+TEST(CompressedVolume, Place)
+{
+  EXPECT_FALSE(vtkCompressedVolume::Place(FloatImage(Size))) << "no stream";
+  const auto part = Compress(FloatImage({ 9, 9, 9 }));
+  part->SetExtent(4, 7, 0, 2, 6, 8);
+  EXPECT_FALSE(vtkCompressedVolume::Place(part)) << "a part";
+  // other indices at the same places, as files have them that count from 0
+  const auto moved = Compress(FloatImage({ 9, 9, 9 }));
+  double first[3];
+  moved->TransformIndexToPhysicalPoint(5, 0, 7, first);
+  moved->SetOrigin(first);
+  moved->SetExtent(0, 4, 0, 4, 0, 3);
+  vtkNew<vtkCompressedVolume> volume;
+  EXPECT_TRUE(volume->Read(moved)) << volume->GetErrorMessage();
+  const int expected[6] = { -2, 6, -2, 6, -2, 6 };
+  EXPECT_TRUE(std::equal(expected, expected + 6, volume->GetExtent()));
+}
+
+//------------------------------------------------------------------------------
+// Filters that merge the arrays of two volumes make a third that is neither.
+TEST(CompressedVolume, RefusesTwoInOne)
+{
+  const auto image = Compress(FloatImage(Size));
+  const auto other = Values<vtkUnsignedCharArray>({ 1, 2, 3 });
+  other->SetName("ProgIso.ZFP.Stream_input_1");
+  image->GetFieldData()->AddArray(other);
+  ExpectRefused(image, "stream of another volume");
+}
+
+//------------------------------------------------------------------------------
+TEST(CompressedVolume, BlankingOfTheImageCounts)
+{
+  for (const bool cells : { false, true })
+  {
+    const auto image = Compress(FloatImage({ 9, 6, 7 }, cells));
+    image->SetExtent(5, 9, -1, 3, 6, 10); // a part, whose indices differ from the stream's
+    int cell[3] = { 6, 1, 8 }, point[3] = { 8, 2, 7 };
+    image->AllocateCellGhostArray()->SetValue(
+      image->ComputeCellId(cell), vtkDataSetAttributes::HIDDENCELL);
+    image->AllocatePointGhostArray()->SetValue(
+      image->ComputePointId(point), vtkDataSetAttributes::HIDDENPOINT);
+    vtkNew<vtkCompressedVolume> volume;
+    ASSERT_TRUE(volume->Read(image)) << volume->GetErrorMessage();
+    int blocks[3];
+    volume->GetBlocks(blocks);
+    const vtkBlockMask hidden = volume->GetCellsWithoutSurface();
+    const auto hides = [&](int x, int y, int z)
+    {
+      const int position[3] = { x - 3, y + 2, z - 5 }; // the stream's extent begins at 3, -2, 5
+      return hidden.Hides(position, blocks);
+    };
+    EXPECT_TRUE(hides(6, 1, 8)) << "the cell";
+    EXPECT_TRUE(hides(8, 2, 7) && hides(7, 1, 6)) << "cells around the point";
+    EXPECT_FALSE(hides(4, 1, 8) || hides(6, 3, 8) || hides(9, 2, 7)) << "others";
+  }
+}
 }

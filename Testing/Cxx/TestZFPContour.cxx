@@ -202,4 +202,142 @@ TEST(ZFPContour, Errors)
   contour->Update();
   EXPECT_TRUE(errors.IsOne("must be finite")) << errors.Describe();
 }
+
+//------------------------------------------------------------------------------
+// Collects triangles by their points alone.
+std::vector<std::vector<float>> Places(vtkPolyData* surface)
+{
+  std::vector<std::vector<float>> triangles(surface->GetNumberOfCells());
+  for (vtkIdType cell = 0; cell < surface->GetNumberOfCells(); ++cell)
+  {
+    vtkNew<vtkIdList> corners;
+    surface->GetCellPoints(cell, corners);
+    for (const vtkIdType corner : *corners)
+    {
+      double x[3];
+      surface->GetPoint(corner, x);
+      triangles[cell].insert(triangles[cell].end(), x, x + 3);
+    }
+  }
+  std::sort(triangles.begin(), triangles.end());
+  return triangles;
+}
+
+vtkSmartPointer<vtkPolyData> FlyingEdges(vtkImageData* image, bool cells)
+{
+  vtkNew<vtkImageData> samples;
+  samples->ShallowCopy(image);
+  if (cells)
+  {
+    int extent[6];
+    double origin[3];
+    image->GetExtent(extent);
+    image->TransformContinuousIndexToPhysicalPoint(0.5, 0.5, 0.5, origin);
+    const vtkSmartPointer<vtkDataArray> values = image->GetCellData()->GetScalars();
+    samples->Initialize();
+    samples->CopyStructure(image);
+    samples->SetExtent(
+      extent[0], extent[1] - 1, extent[2], extent[3] - 1, extent[4], extent[5] - 1);
+    samples->SetOrigin(origin);
+    samples->GetPointData()->SetScalars(values);
+  }
+  vtkNew<vtkFlyingEdges3D> contour;
+  contour->SetInputData(samples);
+  contour->SetValue(0, 10.0);
+  contour->Update();
+  return contour->GetOutput();
+}
+
+// A subset has its own triangles, the same as VTK's of the decompressed subset, and no others.
+TEST(ZFPContour, Subsets)
+{
+  const int parts[][6] = { { 4, 20, -2, 9, 7, 21 }, { 3, 5, -1, 1, 6, 8 },
+    { 19, 25, 3, 19, 5, 27 } };
+  for (const bool cells : { false, true })
+  {
+    const auto compressed = Compress(FloatImage({ 23, 22, 23 }, cells));
+    vtkNew<vtkImageZFPDecompress> decompress;
+    decompress->SetInputData(compressed);
+    decompress->Update();
+    for (const auto& part : parts)
+    {
+      vtkNew<vtkImageData> subset, expected;
+      subset->ShallowCopy(compressed);
+      subset->Crop(part);
+      expected->ShallowCopy(decompress->GetOutput());
+      expected->Crop(part);
+      vtkNew<vtkImageZFPDecompress> again;
+      again->SetInputData(subset);
+      again->Update();
+      EXPECT_TRUE(SameGeometry(again->GetOutput(), expected));
+      EXPECT_FALSE(again->GetOutput()->HasAnyGhostCells());
+      for (int brickSize : { 4, 64 })
+      {
+        vtkNew<vtkZFPContour> contour;
+        contour->SetInputData(subset);
+        contour->SetBrickSize(brickSize);
+        contour->SetValue(0, 10.0);
+        contour->Update();
+        vtkPolyData* const surface = contour->GetOutput();
+        EXPECT_TRUE(Places(surface) == Places(FlyingEdges(expected, cells))) << brickSize;
+        EXPECT_TRUE(surface->GetNumberOfCells() > 0);
+        EXPECT_FALSE(surface->HasAnyGhostCells()) << "no others";
+        double bounds[6], own[6];
+        surface->GetBounds(bounds);
+        expected->GetBounds(own);
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          EXPECT_TRUE(
+            own[2 * axis] <= bounds[2 * axis] && bounds[2 * axis + 1] <= own[2 * axis + 1]);
+        }
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+// Other arrays come along as vtkFlyingEdges3D interpolates them, whatever their type.
+TEST(ZFPContour, CarriesOtherArrays)
+{
+  const Dims dims = { 13, 14, 15 };
+  const auto image = FloatImage(dims);
+  vtkNew<vtkFloatArray> vectors;
+  vectors->SetName("flow");
+  vectors->SetNumberOfComponents(3);
+  vtkNew<vtkUnsignedCharArray> bytes;
+  bytes->SetName("bytes");
+  for (int i = 0; i < Product(dims); ++i)
+  {
+    vectors->InsertNextTuple3(i % 13, i / 13 % 14, i / (13 * 14));
+    bytes->InsertNextValue(static_cast<unsigned char>(i % 13 * 10));
+  }
+  image->GetPointData()->AddArray(vectors);
+  image->GetPointData()->AddArray(bytes);
+  vtkNew<vtkImageZFPCompress> compress;
+  compress->SetInputData(image);
+  compress->PassOtherArraysOn();
+  compress->Update();
+  EXPECT_TRUE(compress->GetOutput()->GetPointData()->GetNumberOfArrays() == 2);
+  EXPECT_TRUE(compress->GetOutput()->GetPointData()->GetScalars() == nullptr);
+  vtkNew<vtkZFPContour> contour;
+  contour->SetInputConnection(compress->GetOutputPort());
+  contour->SetValue(0, 10.0);
+  contour->Update();
+  vtkPolyData* const surface = contour->GetOutput();
+  vtkDataArray* const flow = surface->GetPointData()->GetArray("flow");
+  vtkDataArray* const found = surface->GetPointData()->GetArray("bytes");
+  ASSERT_TRUE(flow && found && surface->GetNumberOfPoints() > 100);
+  EXPECT_TRUE(found->GetDataType() == VTK_UNSIGNED_CHAR);
+  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
+  {
+    double x[3], index[3];
+    surface->GetPoint(i, x);
+    image->TransformPhysicalPointToContinuousIndex(x, index);
+    const double* const v = flow->GetTuple3(i);
+    EXPECT_NEAR(v[0], index[0] - 3, 1e-4);
+    EXPECT_NEAR(v[1], index[1] + 2, 1e-4);
+    EXPECT_NEAR(v[2], index[2] - 5, 1e-4);
+    EXPECT_NEAR(found->GetComponent(i, 0), 10 * (index[0] - 3), 0.51);
+  }
+}
 }

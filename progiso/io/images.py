@@ -11,6 +11,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData
 from .._typing import Array, Progress
 from ..compression import decompress, describe, find_array, is_compressed
 from ..geometry import axes_of
+from ..vtkProgIsoFilters import vtkCompressedVolume
 from .source import Description, Geometry, Region, Source
 
 
@@ -87,6 +88,7 @@ def place_as(image: vtkImageData, other: vtkImageData) -> None:
     image.SetSpacing(other.GetSpacing())
     image.SetOrigin(other.GetOrigin())
     image.SetDirectionMatrix(other.GetDirectionMatrix())
+    vtkCompressedVolume.Place(image)
 
 
 def geometry_of(image: vtkImageData) -> Geometry:

@@ -16,6 +16,7 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from .._typing import Array, Dimensions, Progress
 from ..geometry import hide_points, image_from_array, set_axes
+from ..vtkProgIsoFilters import vtkCompressedVolume
 from .errors import reading
 
 #: Part of a volume: slices of samples along z, y and x, without steps.
@@ -63,6 +64,7 @@ class Geometry:
         set_axes(image, self.axes, self.origin)
         starts = zip(self.extent_start, image.GetDimensions())
         image.SetExtent([index for start, n in starts for index in (start, start + n - 1)])
+        vtkCompressedVolume.Place(image)
 
     def in_space(self, space: str) -> Geometry:
         """Return the same place in other world coordinates.

@@ -18,7 +18,7 @@ def open_zfp(path: Path, selection: Selection) -> Source:
     if selection.dimensions is not None:
         reader.SetDataDimensions([int(n) for n in selection.dimensions])
         reader.SetRate(8.0 if selection.rate is None else selection.rate)
-    elif not reader.CanReadFile(str(path)):
+    elif not reader.HasReadableHeader(str(path)):
         raise ValueError(
             f"'{path}' has no zfp header of a fixed-rate 3-D float32 array; give dimensions and "
             "rate of a file without header"

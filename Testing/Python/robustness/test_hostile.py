@@ -205,7 +205,7 @@ def test_geometry(case):
     empty = scene.picture()
     assert (empty != empty[0, 0]).any()
     GEOMETRIES[case](image)
-    image.Modified()
+    assert progiso.vtkCompressedVolume.Place(image)
     scene.renderer.GetActiveCamera().SetClippingRange(0.1, 500)
     with vtk_messages() as messages:
         scene.window.Render()
