@@ -12,12 +12,16 @@
 class IsosurfaceTurns
 {
 public:
-  ///@{ Whether the prop draws now, when the renderer asks it for this geometry.
-  static bool IsOpaqueTurn(vtkVolume* prop) { return !IsTranslucent(prop); }
-
-  bool IsVolumetricTurn(vtkVolume* prop)
+  ///@{ Whether the prop draws now, when the renderer asks it for this geometry. `mapper`, which may
+  /// be null, has the settings.
+  static bool IsOpaqueTurn(vtkVolume* prop, vtkProgressiveIsosurfaceMapper* mapper)
   {
-    if (!IsTranslucent(prop))
+    return !IsTranslucent(prop, mapper);
+  }
+
+  bool IsVolumetricTurn(vtkVolume* prop, vtkProgressiveIsosurfaceMapper* mapper)
+  {
+    if (!IsTranslucent(prop, mapper))
     {
       return false;
     }
@@ -34,9 +38,10 @@ public:
   ///@}
 
 private:
-  static bool IsTranslucent(vtkVolume* prop)
+  static bool IsTranslucent(vtkVolume* prop, vtkProgressiveIsosurfaceMapper* mapper)
   {
-    return vtkProgressiveIsosurfaceMapper::IsTranslucent(prop->GetProperty());
+    return mapper ? mapper->DrawsTranslucent(prop->GetProperty())
+                  : vtkProgressiveIsosurfaceMapper::IsTranslucent(prop->GetProperty());
   }
 
   bool DrawsWithOverlays = false; ///< in the present render

@@ -30,15 +30,20 @@ int vtkIsosurfaceVolume::Draw(vtkViewport* viewport)
   return 1;
 }
 
+vtkProgressiveIsosurfaceMapper* vtkIsosurfaceVolume::FindMapper()
+{
+  return vtkProgressiveIsosurfaceMapper::SafeDownCast(this->Mapper);
+}
+
 int vtkIsosurfaceVolume::RenderOpaqueGeometry(vtkViewport* viewport)
 {
   this->InvokeEvent(vtkCommand::StartEvent);
-  return IsosurfaceTurns::IsOpaqueTurn(this) ? this->Draw(viewport) : 0;
+  return IsosurfaceTurns::IsOpaqueTurn(this, this->FindMapper()) ? this->Draw(viewport) : 0;
 }
 
 int vtkIsosurfaceVolume::RenderVolumetricGeometry(vtkViewport* viewport)
 {
-  return this->Turns.IsVolumetricTurn(this) ? this->Draw(viewport) : 0;
+  return this->Turns.IsVolumetricTurn(this, this->FindMapper()) ? this->Draw(viewport) : 0;
 }
 
 int vtkIsosurfaceVolume::RenderOverlay(vtkViewport* viewport)

@@ -48,6 +48,7 @@ protected:
 
 private:
   int Draw(vtkViewport* viewport);
+  vtkProgressiveIsosurfaceMapper* FindMapper();
 
   IsosurfaceTurns Turns;
 

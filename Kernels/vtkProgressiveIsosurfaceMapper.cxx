@@ -74,6 +74,7 @@ struct vtkProgressiveIsosurfaceMapper::Internals
   BoundWindow Window; ///< the pipeline's
   ProgressivePipeline Pipeline;
   vtkTimeStamp HandOverTime; ///< of the inputs to the pipeline
+  PaletteCache Palettes;
   ViewState View;
   vtkRenderer* Renderer = nullptr; ///< of the present render
   RefinementTimer Timer;
@@ -144,8 +145,12 @@ void vtkProgressiveIsosurfaceMapper::CopySettings(vtkProgressiveIsosurfaceMapper
     this->SelectScalarArray(other->ArrayId);
   }
   this->SetComponent(other->Component);
-  this->SetRate(other->Rate);
-  this->SetKeepLabels(other->KeepLabels);
+  if (this->Rate != other->Rate || this->KeepLabels != other->KeepLabels)
+  {
+    this->Rate = other->Rate; // SetRate() would switch KeepLabels off
+    this->KeepLabels = other->KeepLabels;
+    this->Modified();
+  }
   this->SetMaskNonFinite(other->MaskNonFinite);
   this->SetColorArrayName(other->ColorArrayName);
   this->SetColorComponent(other->ColorComponent);
@@ -228,6 +233,14 @@ double* vtkProgressiveIsosurfaceMapper::GetBounds()
 bool vtkProgressiveIsosurfaceMapper::IsTranslucent(vtkVolumeProperty* property)
 {
   return HasTranslucent(FindShownIsovalues(property));
+}
+
+bool vtkProgressiveIsosurfaceMapper::DrawsTranslucent(vtkVolumeProperty* property)
+{
+  const bool hasColors =
+    this->GetNumberOfInputConnections(1) > 0 || (this->ColorArrayName && *this->ColorArrayName);
+  vtkScalarsToColors* table = hasColors ? this->ColorLookupTable : nullptr;
+  return IsTranslucent(property) || (table && !table->IsOpaque());
 }
 
 bool vtkProgressiveIsosurfaceMapper::IsPeeled(vtkVolume* volume)
@@ -459,14 +472,17 @@ bool vtkProgressiveIsosurfaceMapper::UpdateScene(vtkRenderer* renderer, vtkVolum
   {
     scene.Look.LitSides = glsl::LIT_LIKE_MESHES;
   }
-  const Obstacles obstacles = scene.Translucent ? FindObstacles(renderer, volume) : Obstacles();
-  scene.Obstructed = obstacles.Count > 0;
   vtkScalarsToColors* table = this->ColorLookupTable
     ? this->ColorLookupTable
     : volume->GetProperty()->GetRGBTransferFunction();
   const CompressedInput& colors = impl.Inputs.GetColors();
-  const bool continues = impl.View.Update(renderer, scene, obstacles,
-    MakePalette(table, colors.GetImage() ? colors.GetVolume() : nullptr));
+  vtkCompressedVolume* colorVolume = colors.GetImage() ? colors.GetVolume() : nullptr;
+  scene.Categories = colorVolume && table->GetIndexedLookup();
+  scene.Translucent = this->DrawsTranslucent(volume->GetProperty());
+  const Obstacles obstacles = scene.Translucent ? FindObstacles(renderer, volume) : Obstacles();
+  scene.Obstructed = obstacles.Count > 0;
+  const bool continues = impl.View.Update(
+    renderer, scene, obstacles, impl.Palettes.Update(table, colorVolume, colors.GetTime()));
   const bool mayWait = !renderer->GetSelector() && this->MayRefineLater(impl.Window.Get());
   return this->UpdatePipeline(!continues, mayWait);
 }

@@ -143,8 +143,11 @@ public:
 
   ///@{
   /**
-   * Maps values of the volume that gives the colours to colours. Null (default): the property's
-   * transfer function does.
+   * Maps values of the volume that gives the colours to colours: with its nodes or steps,
+   * logarithmic or not, its colours below and above its range and for NaN, and its opacities. With
+   * an indexed lookup the nearest sample's value is looked up, as there are no categories between
+   * others. Values count as within a range, and as a category, as far as compression may have moved
+   * them. Null (default): the property's transfer function does.
    */
   virtual void SetColorLookupTable(vtkScalarsToColors* table);
   vtkGetObjectMacro(ColorLookupTable, vtkScalarsToColors);
@@ -319,6 +322,13 @@ public:
    * Whether a property makes one of its isosurfaces translucent, with an opacity between 0 and 1.
    */
   static bool IsTranslucent(vtkVolumeProperty* property);
+
+  /**
+   * Whether this mapper draws translucent isosurfaces with a property: because of its opacities, or
+   * as another volume gives the colours and their table is not opaque (a lookup table with alpha,
+   * or a vtkDiscretizableColorTransferFunction with EnableOpacityMapping). Both opacities multiply.
+   */
+  bool DrawsTranslucent(vtkVolumeProperty* property);
 
   /**
    * Whether a vtkDualDepthPeelingPass is rendering a volume layer by layer, which the mapper does

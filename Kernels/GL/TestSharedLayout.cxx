@@ -105,9 +105,12 @@ const Members BlockMembers = {
   MEMBER(Cache, SpeculationLimit), MEMBER(Cache, PixelsPerStraggler),
   MEMBER(Cache, SlotCapacity), MEMBER(Cache, FirstNewSlot), MEMBER(Cache, FirstNewPage),
 
-  MEMBER(Palette, Low), MEMBER(Palette, PerUnit),
+  MEMBER(Palette, NumberOfNodes), MEMBER(Palette, Tolerance),
   MEMBER(Palette, Padding0), MEMBER(Palette, Padding1),
-  ELEMENTS(Palette, Colors, Rgb), ELEMENTS(Palette, Colors, Padding0),
+  MEMBER(Palette, Below), MEMBER(Palette, Above), MEMBER(Palette, None),
+  ELEMENTS(Palette, Nodes, Rgb), ELEMENTS(Palette, Nodes, Value),
+  { "Palette.Opacities[]", { offsetof(glsl::Palette, Opacities), sizeof(glsl::vec4),
+    sizeof(glsl::Palette::Opacities) } },
 };
 
 // Of storage buffers: offsets in a block, or in an element of the array that a buffer is.
@@ -198,7 +201,9 @@ SceneNeeds EverythingNeeded(bool cached)
   SceneNeeds needs;
   needs.Blocks = 64;
   needs.Macrocells = needs.Pixels = needs.Slots = needs.MapPages = needs.HiddenWords = 1;
+  needs.HiddenColorWords = 1;
   needs.HiddenCells = true;
+  needs.HiddenColors = true;
   needs.Cached = cached;
   needs.Lit = needs.Detailed = needs.SeveralIsovalues = true;
   needs.Translucent = needs.Obstructed = needs.Clipped = needs.Cropped = true;

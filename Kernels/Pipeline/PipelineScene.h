@@ -12,6 +12,7 @@ struct PipelineScene
   glsl::Look Look = {};
   bool Translucent = false; ///< an isosurface is
   bool Obstructed = false;  ///< opaque geometry may hide translucent isosurfaces
+  bool Categories = false;  ///< the colours' volume has categories, not values in between
 };
 
 #endif

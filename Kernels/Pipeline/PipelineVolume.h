@@ -13,8 +13,9 @@ struct PipelineVolume
 {
   int Samples[3] = { 0, 0, 0 };
   CompressedStream Values;
-  CompressedStream Colors;           ///< without data: none
-  std::vector<std::uint32_t> Hidden; ///< cells: see HiddenCells in Buffers.glsl; empty: none
+  CompressedStream Colors;                 ///< without data: none
+  std::vector<std::uint32_t> Hidden;       ///< cells: see HiddenCells in Buffers.glsl; empty: none
+  std::vector<std::uint32_t> HiddenColors; ///< likewise, samples of the colours
 };
 
 #endif

@@ -98,6 +98,8 @@ void ProgressivePipeline::SetVolume(const PipelineVolume& volume)
   this->Needs.Colored = volume.Colors.Data != nullptr;
   this->Needs.HiddenCells = !volume.Hidden.empty();
   this->Needs.HiddenWords = static_cast<std::int64_t>(volume.Hidden.size());
+  this->Needs.HiddenColors = this->Needs.Colored && !volume.HiddenColors.empty();
+  this->Needs.HiddenColorWords = static_cast<std::int64_t>(volume.HiddenColors.size());
   this->Policy.Reset(this->Needs.SlotCapacity > 0);
 }
 
@@ -130,6 +132,7 @@ Status ProgressivePipeline::UploadVolume()
   const Stopwatch stopwatch;
   this->Gpu->Uniforms.Upload(DescribeVolume(this->Size, this->Volume));
   this->Gpu->Buffers.Upload(Buffer::HiddenCells, this->Volume.Hidden);
+  this->Gpu->Buffers.Upload(Buffer::HiddenColors, this->Volume.HiddenColors);
   this->Streams.Free();
   Status status =
     this->Streams.Upload(this->Gpu->Gl, Buffer::Stream, this->Volume.Values, this->Size);
@@ -475,6 +478,7 @@ void ProgressivePipeline::UpdateNeeds(const PipelineScene& scene)
   this->Needs.Lit = scene.Look.NumberOfLights > 0;
   this->Needs.Translucent = scene.Translucent;
   this->Needs.Obstructed = scene.Obstructed;
+  this->Needs.Categories = this->Needs.Colored && scene.Categories;
   this->Needs.SeveralIsovalues = view.NumberOfIsovalues > 1;
   this->Needs.Clipped = view.NumberOfClippingPlanes > 0;
   this->Needs.Cropped = view.DrawnRegions != glsl::ALL_REGIONS;

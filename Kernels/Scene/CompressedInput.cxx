@@ -80,28 +80,6 @@ Status Compress(const CompressedInput::Choice& choice, vtkSmartPointer<vtkImageD
   compressed = compress->GetOutput();
   return errors.GetStatus();
 }
-
-// Packs the runs of a mask as Buffers.glsl reads them.
-std::vector<std::uint32_t> DescribeHidden(const vtkBlockMask& mask)
-{
-  const std::vector<vtkBlockMask::Run>& runs = mask.GetRuns();
-  std::vector<std::uint32_t> words;
-  if (!runs.empty())
-  {
-    words.reserve(1 + 3 * runs.size());
-    words.push_back(static_cast<std::uint32_t>(runs.size()));
-    for (const vtkBlockMask::Run& run : runs)
-    {
-      words.push_back(static_cast<std::uint32_t>(run.First));
-    }
-    for (const vtkBlockMask::Run& run : runs)
-    {
-      words.push_back(static_cast<std::uint32_t>(run.Bits));
-      words.push_back(static_cast<std::uint32_t>(run.Bits >> 32));
-    }
-  }
-  return words;
-}
 }
 
 CompressedInput::CompressedInput() = default;
@@ -155,6 +133,27 @@ Status CompressedInput::Read(const Choice& choice)
   }
   this->Image = image;
   return Status();
+}
+
+std::vector<std::uint32_t> DescribeHidden(const vtkBlockMask& mask)
+{
+  const std::vector<vtkBlockMask::Run>& runs = mask.GetRuns();
+  std::vector<std::uint32_t> words;
+  if (!runs.empty())
+  {
+    words.reserve(1 + 3 * runs.size());
+    words.push_back(static_cast<std::uint32_t>(runs.size()));
+    for (const vtkBlockMask::Run& run : runs)
+    {
+      words.push_back(static_cast<std::uint32_t>(run.First));
+    }
+    for (const vtkBlockMask::Run& run : runs)
+    {
+      words.push_back(static_cast<std::uint32_t>(run.Bits));
+      words.push_back(static_cast<std::uint32_t>(run.Bits >> 32));
+    }
+  }
+  return words;
 }
 
 // Whole words of 64 bits, as zfp writes them.

@@ -12,8 +12,11 @@
 #include "vtkSmartPointer.h"
 #include "vtkTimeStamp.h"
 
+#include <cstdint>
 #include <tuple>
+#include <vector>
 
+class vtkBlockMask;
 class vtkCompressedVolume;
 class vtkDataArray;
 class vtkImageData;
@@ -68,6 +71,8 @@ private:
 ///@{ What the pipeline uploads of a compressed volume. It shares the ownership of the stream.
 CompressedStream DescribeStream(vtkCompressedVolume* volume);
 PipelineVolume DescribeVolume(vtkCompressedVolume* volume);
+/// Packs the runs of a mask as Buffers.glsl reads them.
+std::vector<std::uint32_t> DescribeHidden(const vtkBlockMask& mask);
 ///@}
 
 #endif

@@ -102,6 +102,7 @@ PipelineVolume InputArrays::Describe() const
   if (this->Colors.GetImage())
   {
     volume.Colors = DescribeStream(this->Colors.GetVolume());
+    volume.HiddenColors = DescribeHidden(this->Colors.GetVolume()->GetHiddenSamples());
   }
   return volume;
 }

@@ -108,7 +108,7 @@ TEST_F(ViewStateOfRenders, TellsOfANewPalette)
   this->Palette.emplace();
   EXPECT_TRUE(this->GoesOn());
   EXPECT_TRUE(this->State.HasNewPalette());
-  this->Palette->Low = 1.0f;
+  this->Palette->Tolerance = 1.0f;
   EXPECT_TRUE(this->GoesOn());
   EXPECT_TRUE(this->State.HasNewPalette());
   EXPECT_TRUE(this->GoesOn());

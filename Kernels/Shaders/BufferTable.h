@@ -21,6 +21,7 @@ enum class Buffer
   Macrocells,
   BlockMarks,
   HiddenCells,
+  HiddenColors,
   Hits,
   Normals,
   Layers,

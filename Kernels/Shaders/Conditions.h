@@ -27,6 +27,7 @@ constexpr Condition CachedColors = { "cache and colours",
 constexpr Condition DecodedColors = { "no cache, and colours",
   [](const E& e) { return !e.Cached && e.Colored; } };
 constexpr Condition Hidden = { "hidden cells", [](const E& e) { return e.HiddenCells; } };
+constexpr Condition HiddenColors = { "hidden colours", [](const E& e) { return e.HiddenColors; } };
 constexpr Condition Translucent = { "translucent", [](const E& e) { return e.Translucent; } };
 constexpr Condition StoredNormals = { "lit and opaque",
   [](const E& e) { return e.Lit && !e.Translucent; } };

@@ -11,6 +11,7 @@ namespace glsl
 {
 using uint = std::uint32_t;
 using vec3 = float[3];
+using vec4 = float[4];
 using mat3 = float[3][4]; // columns
 using ivec2 = std::int32_t[2];
 using ivec3 = std::int32_t[3];

@@ -30,8 +30,9 @@ SceneNeeds SmallScene(bool cached)
 
 SceneNeeds WithAllFeatures(SceneNeeds needs)
 {
-  needs.HiddenWords = 1;
+  needs.HiddenWords = needs.HiddenColorWords = 1;
   needs.Lit = needs.Detailed = needs.HiddenCells = needs.SeveralIsovalues = needs.Obstructed = true;
+  needs.HiddenColors = true;
   needs.Clipped = needs.Cropped = needs.Colored = true;
   return needs;
 }
@@ -42,6 +43,12 @@ SceneNeeds Translucent(SceneNeeds needs)
   return needs;
 }
 
+SceneNeeds WithCategories(SceneNeeds needs)
+{
+  needs.Categories = needs.Colored = true;
+  return needs;
+}
+
 std::vector<SceneNeeds> Scenes()
 {
   std::vector<SceneNeeds> scenes;
@@ -49,7 +56,8 @@ std::vector<SceneNeeds> Scenes()
   {
     const SceneNeeds plain = SmallScene(cached);
     const SceneNeeds all = WithAllFeatures(plain);
-    scenes.insert(scenes.end(), { all, plain, Translucent(all), Translucent(plain) });
+    scenes.insert(
+      scenes.end(), { all, plain, Translucent(all), Translucent(plain), WithCategories(plain) });
   }
   return scenes;
 }

@@ -205,7 +205,7 @@ void vtkIsosurfaceBlocksMapper::UpdateSettings()
 std::vector<std::size_t> vtkIsosurfaceBlocksMapper::FindOrder(
   vtkRenderer* renderer, vtkVolume* volume)
 {
-  if (vtkProgressiveIsosurfaceMapper::IsTranslucent(volume->GetProperty()))
+  if (this->Settings->DrawsTranslucent(volume->GetProperty()))
   {
     std::vector<BlockOrder::Bounds> bounds;
     for (const auto& mapper : this->Mappers)

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVIsosurfaceLODVolume.h"
 
+#include "vtkIsosurfaceBlocksMapper.h"
+
 #include "vtkLODProp3D.h"
 #include "vtkObjectFactory.h"
 
@@ -14,13 +16,13 @@ int vtkPVIsosurfaceLODVolume::RenderOpaqueGeometry(vtkViewport* viewport)
   {
     return this->Superclass::RenderOpaqueGeometry(viewport);
   }
-  return IsosurfaceTurns::IsOpaqueTurn(this) ? this->RenderIsosurfaces(viewport) : 0;
+  return IsosurfaceTurns::IsOpaqueTurn(this, this->FindSettings()) ? this->RenderIsosurfaces(viewport) : 0;
 }
 
 //------------------------------------------------------------------------------
 int vtkPVIsosurfaceLODVolume::RenderVolumetricGeometry(vtkViewport* viewport)
 {
-  return !this->ShowsOutline() && this->Turns.IsVolumetricTurn(this)
+  return !this->ShowsOutline() && this->Turns.IsVolumetricTurn(this, this->FindSettings())
     ? this->RenderIsosurfaces(viewport)
     : 0;
 }
@@ -29,6 +31,13 @@ int vtkPVIsosurfaceLODVolume::RenderVolumetricGeometry(vtkViewport* viewport)
 int vtkPVIsosurfaceLODVolume::RenderOverlay(vtkViewport* viewport)
 {
   return this->Turns.IsOverlayTurn() ? this->RenderIsosurfaces(viewport) : 0;
+}
+
+//------------------------------------------------------------------------------
+vtkProgressiveIsosurfaceMapper* vtkPVIsosurfaceLODVolume::FindSettings()
+{
+  auto* blocks = vtkIsosurfaceBlocksMapper::SafeDownCast(this->GetMapper());
+  return blocks ? blocks->GetSettings() : nullptr;
 }
 
 //------------------------------------------------------------------------------

@@ -30,6 +30,7 @@ protected:
 private:
   /// True on processes without data: they show the outline.
   bool ShowsOutline();
+  vtkProgressiveIsosurfaceMapper* FindSettings();
   int RenderIsosurfaces(vtkViewport* viewport);
 
   IsosurfaceTurns Turns;

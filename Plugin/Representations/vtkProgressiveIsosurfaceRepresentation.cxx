@@ -91,7 +91,8 @@ int vtkProgressiveIsosurfaceRepresentation::ProcessViewRequest(
   {
     // The superclass asks for ordered compositing; opaque surfaces are composited by depth.
     this->UpdateLook();
-    if (!vtkProgressiveIsosurfaceMapper::IsTranslucent(this->Property))
+    this->UpdateColors();
+    if (!this->GetIsosurfaceMapper()->DrawsTranslucent(this->Property))
     {
       outInfo->Remove(vtkPVRenderView::NEED_ORDERED_COMPOSITING());
     }

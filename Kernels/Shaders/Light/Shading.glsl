@@ -5,15 +5,7 @@
 #include "Surface/Hits.glsl"
 
 #ifdef COLORED
-#include "Light/Palette.glsl.h"
-
-vec3 ColorOfValue(float value)
-{
-  float place = clamp((value - palette.Low) * palette.PerUnit, 0.0, 1.0);
-  float at = place * float(PALETTE_SIZE - 1);
-  int below = min(int(at), PALETTE_SIZE - 2);
-  return mix(palette.Colors[below].Rgb, palette.Colors[below + 1].Rgb, at - float(below));
-}
+#include "Light/ValueColors.glsl"
 #endif
 
 #ifdef LIT
@@ -68,17 +60,20 @@ vec3 Illuminate(vec3 position, vec3 normal, vec3 toViewer, vec3 surfaceColor)
 }
 #endif
 
-// Colour of a hit at parameter t of a pixel's ray; where nothing is lit the normal does not count.
-vec3 Shade(uint pixel, float t, vec3 normal, int isovalue)
+// Colour and opacity of a hit at parameter t of a pixel's ray; where nothing is lit the normal does
+// not count.
+vec4 Shade(uint pixel, float t, vec3 normal, int isovalue)
 {
 #ifdef COLORED
-  vec3 color = ColorOfValue(ColorValueOf(pixel));
+  vec4 color = ColorOfValue(ColorValueOf(pixel));
+  color.w *= look.Colors[isovalue].Opacity;
 #else
-  vec3 color = look.Colors[isovalue].Rgb;
+  vec4 color = vec4(look.Colors[isovalue].Rgb, look.Colors[isovalue].Opacity);
 #endif
 #ifdef LIT
   vec3 direction = EyeRayDirection(pixel);
-  color = Illuminate(EyeRayOrigin(pixel) + t * direction, normal, -normalize(direction), color);
+  vec3 position = EyeRayOrigin(pixel) + t * direction;
+  color.xyz = Illuminate(position, normal, -normalize(direction), color.xyz);
 #endif
   return color;
 }

@@ -60,6 +60,6 @@ void main()
 #endif
   fragmentPosition = vec4(EyeRayOrigin(pixel) + t * direction, 1.0);
   fragmentNormal = vec4(dot(normal, direction) > 0.0 ? -normal : normal, 1.0);
-  fragmentColor = vec4(Shade(pixel, t, normal, HitOf(pixel).Isovalue), 1.0);
+  fragmentColor = vec4(Shade(pixel, t, normal, HitOf(pixel).Isovalue).xyz, 1.0);
 #endif
 }

@@ -31,6 +31,14 @@ BUFFER_HIDDEN_CELLS HiddenCells
   uint hiddenCells[];
 };
 #endif
+#ifdef BUFFER_HIDDEN_COLORS
+// Likewise, which samples of the volume that gives the colours have no value.
+BUFFER_HIDDEN_COLORS HiddenColors
+{
+  uint hiddenColorRuns;
+  uint hiddenColors[];
+};
+#endif
 
 // ---- the image
 #ifdef BUFFER_HITS

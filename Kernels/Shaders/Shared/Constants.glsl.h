@@ -14,7 +14,7 @@ const int MAX_LIGHTS = 16;
 const int MAX_ISOVALUES = 256;
 const int MAX_CLIPPING_PLANES = 16;
 const int ALL_REGIONS = (1 << 27) - 1; // a bit for each cropping region
-const int PALETTE_SIZE = 256;          // colours
+const int PALETTE_SIZE = 768;          // nodes: with all else 16 KiB, as OpenGL 4.3 guarantees
 
 // Values of Look.LitSides: a light reaches a surface from where the values are lower, from either
 // side, or only the side that is seen, as VTK's meshes are lit.

@@ -49,6 +49,25 @@ uint ListedBlock(uint i)
 }
 #endif
 
+#ifdef BUFFER_HIDDEN_COLORS
+const uint NOT_A_NUMBER = 0x7FC00000u;
+
+// Four samples, of which those whose bits are set have no value.
+uvec4 MarkRow(uvec4 row, uint bits)
+{
+  uvec4 hidden = uvec4(0u) - (uvec4(bits) >> uvec4(0u, 1u, 2u, 3u) & 1u); // all bits, or none
+  return (row & ~hidden) | (NOT_A_NUMBER & hidden);
+}
+
+void MarkHidden(inout DecodedBlock decoded, uvec2 hidden)
+{
+#define MARK_ROW(r)                                                                                \
+  decoded.Row[r] = MarkRow(                                                                        \
+    decoded.Row[r], ((r) < 8 ? hidden.x : hidden.y) >> (uint(BLOCK_SIDE) * (uint(r) & 7u)));
+  FOR_ROWS(MARK_ROW)
+}
+#endif
+
 void StoreBlock(uint slot, DecodedBlock decoded)
 {
 #define STORE_ROW(r) cacheRows[uint(ROWS_PER_BLOCK) * slot + uint(r)] = decoded.Row[r];
@@ -68,7 +87,11 @@ void main()
       uint slot = SlotFor(i, block);
       if (slot != NONE)
       {
-        StoreBlock(FirstSlot() + slot, DecodeBlock(block, lane));
+        DecodedBlock decoded = DecodeBlock(block, lane);
+#ifdef BUFFER_HIDDEN_COLORS
+        MarkHidden(decoded, FindHiddenColors(block));
+#endif
+        StoreBlock(FirstSlot() + slot, decoded);
 #ifdef BUFFER_HIDDEN_CELLS
         cacheRows[HiddenRow(slot)] = uvec4(FindHiddenCells(block), 0u, 0u);
 #endif

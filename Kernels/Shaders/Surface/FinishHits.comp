@@ -63,8 +63,8 @@ uint FinishHit(uint pixel)
   }
 #endif
   Hit hit = HitOf(pixel);
-  vec3 color = Shade(pixel, DepthAt(HitT(hit.Key)), normal, hit.Isovalue);
-  return AddLayer(pixel, color, look.Colors[hit.Isovalue].Opacity) ? CONTINUES : DONE;
+  vec4 color = Shade(pixel, DepthAt(HitT(hit.Key)), normal, hit.Isovalue);
+  return AddLayer(pixel, color.xyz, color.w) ? CONTINUES : DONE;
 }
 #else
 uint FinishHit(uint pixel)

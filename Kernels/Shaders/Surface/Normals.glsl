@@ -50,7 +50,26 @@ Stencil StencilOf(ivec3 cell)
 #define COLOR_SAMPLE(i, j, k)                                                                      \
   uintBitsToFloat(cacheValues[uint(SAMPLES_PER_BLOCK) * ColorSlot(0u) + STENCIL_INDEX(at, i, j, k)])
 
-// The trilinear interpolant of the volume that gives the colours.
+#define NO_VALUE uintBitsToFloat(0x7F800000u) // infinity
+
+#ifdef CATEGORIES
+// The value of the nearest sample that gives the colours: between two categories there is none.
+float ColorValue(SurfacePoint hit)
+{
+  Stencil at = StencilOf(hit.Cell);
+  bvec3 far = greaterThanEqual(hit.Local, vec3(0.5));
+  vec4 low = vec4(COLOR_SAMPLE(y, y, y), COLOR_SAMPLE(z, y, y), COLOR_SAMPLE(y, z, y),
+    COLOR_SAMPLE(z, z, y));
+  vec4 high = vec4(COLOR_SAMPLE(y, y, z), COLOR_SAMPLE(z, y, z), COLOR_SAMPLE(y, z, z),
+    COLOR_SAMPLE(z, z, z));
+  vec4 face = far.z ? high : low;
+  vec2 edge = far.y ? face.zw : face.xy;
+  float value = far.x ? edge.y : edge.x;
+  return isnan(value) ? NO_VALUE : value;
+}
+#else
+// The trilinear interpolant of the volume that gives the colours; of samples that are hidden there,
+// which are NaN, it has no value.
 float ColorValue(SurfacePoint hit)
 {
   Stencil at = StencilOf(hit.Cell);
@@ -60,8 +79,10 @@ float ColorValue(SurfacePoint hit)
     COLOR_SAMPLE(z, z, z));
   vec4 face = mix(low, high, hit.Local.z);
   vec2 edge = mix(face.xy, face.zw, hit.Local.y);
-  return mix(edge.x, edge.y, hit.Local.x);
+  float value = mix(edge.x, edge.y, hit.Local.x);
+  return isnan(value) ? NO_VALUE : value;
 }
+#endif
 #endif
 
 #ifdef HAS_HIDDEN_CELLS

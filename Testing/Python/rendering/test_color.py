@@ -2,9 +2,13 @@
 
 import numpy as np
 import pytest
-from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkLookupTable
 from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction
-from vtkmodules.vtkRenderingCore import vtkColorTransferFunction
+from vtkmodules.vtkRenderingCore import (
+    vtkColorTransferFunction,
+    vtkDiscretizableColorTransferFunction,
+)
 
 import progiso
 from helpers.images import blobs, make_image
@@ -136,6 +140,179 @@ def test_other_colours_decode_nothing(opacity):
     assert (
         decoded == 0 or opacity == 1.0
     )  # an opaque image keeps its hits, and with them the first image's passes
+
+
+# --- colour maps ----------------------------------------------------------------------------------
+
+
+def map_of(kind):
+    """Return a table over [-14, 14], or over decades, of a kind that users have."""
+    colors = vtkDiscretizableColorTransferFunction()
+    if kind.startswith("lookup"):
+        colors = vtkLookupTable()
+        colors.SetNumberOfTableValues(9 if "few" in kind else 700)
+        colors.SetTableRange(-RADIUS / 2, RADIUS / 2)
+        colors.SetHueRange(0.9, 0.1)
+        colors.Build()
+    elif kind == "decades":
+        colors.SetUseLogScale(True)
+        colors.DiscretizeOff()
+        for place, color in ((1e-6, (0, 0, 1)), (1e-3, (1, 1, 0)), (1e6, (1, 0, 0))):
+            colors.AddRGBPoint(place, *color)
+    else:
+        colors.SetDiscretize(kind == "few steps")
+        colors.SetNumberOfValues(7)
+        for place, color in (
+            (-RADIUS / 2, (0, 0, 1)),
+            (-1, (0, 1, 0)),
+            (-0.999999, (1, 1, 0)),  # a jump
+            (RADIUS / 2, (1, 0, 0)),
+        ):
+            colors.AddRGBPoint(place, *color)
+        if kind == "lab":
+            colors.SetColorSpaceToLab()
+        if kind == "sharp":
+            colors.RemoveAllPoints()
+            colors.AddRGBPoint(-RADIUS / 2, 0, 0, 1, 0.25, 1.0)
+            colors.AddRGBPoint(RADIUS / 2, 1, 0, 0)
+    if "beyond" in kind:
+        colors.UseBelowRangeColorOn()
+        colors.UseAboveRangeColorOn()
+        colors.SetBelowRangeColor(*((0, 1, 1, 1) if "lookup" in kind else (0, 1, 1)))
+        colors.SetAboveRangeColor(*((1, 0, 1, 1) if "lookup" in kind else (1, 0, 1)))
+    return colors
+
+
+def check_mapped(scene, values, slope, colors):
+    """Hold pixels against the table's colours of the values there, or within half a voxel."""
+    picture, hit = picture_of(scene), np.isfinite(values)
+    assert hit.sum() > 1000
+    found, at = picture[hit], values[hit]
+    closest = np.full(len(at), 999.0)
+    color = [0.0] * 3
+    for shift in (-slope, 0, slope):
+        expected = np.empty((len(at), 3))
+        for i, value in enumerate(at * (1 + shift) if slope < 0.02 else at + shift):
+            colors.GetColor(value, color)
+            expected[i] = color
+        closest = np.minimum(closest, np.abs(found - 255 * expected).max(axis=1))
+    assert (closest <= 3).mean() > 0.995, np.sort(closest)[-20:]
+    assert len(np.unique(found, axis=0)) > 1
+
+
+@pytest.mark.parametrize(
+    "kind",
+    ["nodes", "lab", "sharp", "few steps", "beyond", "lookup few beyond", "lookup many"],
+)
+def test_tables_have_their_nodes_steps_and_ends(kind):
+    colors = map_of(kind)
+    colors.Build()
+    scene = scene_of(ball(), colors=colors, ColorArrayName="right")
+    check_mapped(scene, ray_places(scene), 0.03, colors)
+
+
+def test_decades():
+    """Two thirds of a logarithmic map would be one colour by samples at even distances."""
+    image, colors = ball(), map_of("decades")
+    x = vtk_to_numpy(image.GetPointData().GetArray("right"))
+    decades = numpy_to_vtk(np.exp(x.astype(float)), deep=True)
+    decades.SetName("decades")
+    image.GetPointData().AddArray(decades)
+    scene = scene_of(image, colors=colors, ColorArrayName="decades")
+    scene.mapper.SetRate(32)
+    place = ray_places(scene)
+    place[~np.isfinite(place)] = np.nan
+    low = np.floor(place - 0.5) + 0.5  # the interpolant is linear between samples at half voxels
+    values = np.exp(low) + (place - low) * (np.exp(low + 1) - np.exp(low))
+    check_mapped(scene, values, 0.015, colors)
+
+
+def test_categories_are_those_of_the_nearest_sample():
+    """Labels 1, 5 and 9; 3 has no colour, and between two there is none."""
+    image = ball()
+    x = vtk_to_numpy(image.GetPointData().GetArray("right"))
+    labels = np.digitize(x, [-6, 0, 6]) * 4 + 1
+    labels[labels == 13] = 3
+    array = numpy_to_vtk(labels.astype(np.int32), deep=True)
+    array.SetName("labels")
+    image.GetPointData().AddArray(array)
+    for kind in (vtkLookupTable, vtkDiscretizableColorTransferFunction):
+        colors = kind()
+        colors.SetIndexedLookup(True)
+        for label in (1, 5, 9):
+            colors.SetAnnotation(label, str(label))
+        palette = np.eye(3)
+        if kind is vtkLookupTable:
+            colors.SetNumberOfTableValues(3)
+            for i, color in enumerate(palette):
+                colors.SetTableValue(i, *color, 1)
+            colors.SetNanColor(1, 1, 0, 1)
+        else:
+            colors.SetNumberOfIndexedColors(3)
+            for i, color in enumerate(palette):
+                colors.SetIndexedColor(i, *color)
+            colors.SetNanColor(1, 1, 0)
+        scene = scene_of(image, colors=colors, ColorArrayName="labels")
+        place, picture = ray_places(scene), picture_of(scene)
+        hit = np.isfinite(place)
+        nearest = np.floor(place[hit]) + 0.5
+        expected = np.vstack([palette, [1, 1, 0]])[np.digitize(nearest, [-6, 0, 6])] * 255
+        sure = np.abs(place[hit] - np.round(place[hit])) > 0.02
+        assert (np.abs(picture[hit] - expected).max(axis=1)[sure] <= 1).mean() > 0.999
+        # back to a map of values in between: the hits' values are others
+        scene.mapper.SetColorLookupTable(map_of("nodes"))
+        assert len(np.unique(picture_of(scene)[hit], axis=0)) > 5
+        scene.mapper.SetColorLookupTable(colors)
+        assert np.array_equal(picture_of(scene), picture)
+
+
+@pytest.mark.parametrize("settings", [{}, CACHED])
+@pytest.mark.parametrize("cells", [False, True])
+def test_no_number_has_its_colour(cells, settings):
+    image = ball(cells)
+    array = image.GetCellData() if cells else image.GetPointData()
+    right = vtk_to_numpy(array.GetArray("right"))
+    right[right > 4] = np.nan
+    right[right < -8] = np.inf
+    colors = table()
+    colors.SetNanColor(0, 1, 0)
+    if cells:
+        image.SetOrigin(-0.5, -0.5, -0.5)
+    scene = scene_of(image, colors=colors, ColorArrayName="right", **settings)
+    place, picture = ray_places(scene), picture_of(scene)
+    green = (picture == [0, 255, 0]).all(axis=2)
+    none = (place > 3.6) | (place < -7.6)  # samples lie at half voxels
+    some = (place < 3.4) & (place > -7.4)
+    assert green[none & np.isfinite(place)].all() and not green[some].any()
+    assert green.sum() > 500
+
+
+@pytest.mark.parametrize("opacity", [1.0, 0.5])
+def test_opacities_of_a_table(opacity):
+    """The table's and the isosurface's multiply; the same picture by a flat map and opacities."""
+    colors = map_of("nodes")
+    opacities = vtkPiecewiseFunction()
+    opacities.AddPoint(-RADIUS, 0.6)
+    opacities.AddPoint(RADIUS, 0.6)
+    colors.SetScalarOpacityFunction(opacities)
+    colors.EnableOpacityMappingOn()
+    scene = scene_of(ball(), opacity=opacity, colors=colors, ColorArrayName="right")
+    mapped = picture_of(scene)
+    assert scene.mapper.DrawsTranslucent(scene.volume.GetProperty())
+    colors.EnableOpacityMappingOff()
+    plain = picture_of(
+        scene_of(ball(), opacity=0.6 * opacity, colors=map_of("nodes"), ColorArrayName="right")
+    )
+    assert np.abs(mapped - plain).max() <= 1
+    # where a part is clear, what lies behind it shows alone
+    opacities.RemoveAllPoints()
+    for place, value in ((-RADIUS, 0), (-0.01, 0), (0.01, 1), (RADIUS, 1)):
+        opacities.AddPoint(place, value)
+    colors.EnableOpacityMappingOn()
+    half = picture_of(scene)
+    place = ray_places(scene)
+    clear, shown = half[place < -1], half[(place > 1) & np.isfinite(place)]
+    assert (clear == half[0, 0]).all() and (shown != half[0, 0]).any(axis=1).all()
 
 
 def test_errors():

@@ -142,7 +142,7 @@ def least_budget(image, surfaces, lit):
     with vtk_messages() as messages:
         scene.window.Render()
     words = "".join(messages).split()
-    return int(words[words.index("least") + 1])
+    return int(words[words.index("bytes)") - 1].strip("("))
 
 
 @pytest.fixture(scope="module", params=[False, True], ids=["unlit", "lit"])

@@ -209,12 +209,19 @@ def test_picking_is_told_of(image):
 # --- VTK's own ------------------------------------------------------------------------------------
 
 
-def select(scene, association, area):
+def selector_of(scene, association, area=(0, 0, SIZE[0] - 1, SIZE[1] - 1)):
     selector = vtkHardwareSelector()
     selector.SetRenderer(scene.renderer)
     selector.SetArea(*area)
     selector.SetFieldAssociation(association)
-    selection = selector.Select()
+    return selector
+
+
+def select(scene, association, area):
+    return selected_by(selector_of(scene, association, area).Select())
+
+
+def selected_by(selection):
     found = {}
     for i in range(selection.GetNumberOfNodes()):
         node = selection.GetNode(i)
@@ -225,31 +232,77 @@ def select(scene, association, area):
     return found
 
 
+CELLS, POINTS = vtkDataObject.FIELD_ASSOCIATION_CELLS, vtkDataObject.FIELD_ASSOCIATION_POINTS
+
+
+def check_selected(scene, image, expected, association, extent=None, matrix=None):
+    """Each pixel has the cell of the image that holds the first hit, or the corner next to it."""
+    volume = reference_volume(image, matrix)
+    samples = np.array(vtk_extent(image)).reshape(3, 2)
+    ids = np.array(extent or image.GetExtent()).reshape(3, 2)
+    counts = np.ptp(ids, axis=1) + (association == POINTS)
+    centred = progiso.describe(image)["association"] == "cell"
+    selector = selector_of(scene, association)
+    selector.CaptureBuffers()
+    hits = 0
+    for x, y in PIXELS:
+        found = selected_by(selector.GenerateSelection(x, y, x, y))
+        assert set(found) == ({scene.volumes[0]} if (x, y) in expected else set())
+        if found:
+            place = to_index(volume, expected[x, y][0][None])[0] + 0.5 * centred
+            place += 0.5 * (association == POINTS)
+            if np.abs(place - np.round(place)).min() > 1e-3:  # else it may as well be the next
+                at = np.clip(place.astype(int) + samples[:, 0] - ids[:, 0], 0, counts - 1)
+                assert found[scene.volumes[0]] == {
+                    int(at[0] + counts[0] * (at[1] + counts[1] * at[2]))
+                }
+                hits += 1
+    assert hits > 30
+
+
+def vtk_extent(image):
+    volume = progiso.vtkCompressedVolume()
+    assert volume.Read(image)
+    return volume.GetExtent()
+
+
+@pytest.mark.parametrize("association", [CELLS, POINTS])
 @pytest.mark.parametrize("surfaces", [OPAQUE, NESTED])
 @pytest.mark.parametrize("matrix", [None, TURNED])
-def test_the_selector_finds_cells(image, surfaces, matrix):
-    """Each pixel has the cell of the image that holds the first hit."""
+def test_the_selector_finds_cells_and_points(image, surfaces, matrix, association):
     scene = ComparisonScene(ours=True)
     show(scene, image, surfaces, matrix=matrix)
     scene.render()
     expected = first_crossings(scene, image, surfaces, matrix)
-    volume = reference_volume(image, matrix)
-    cells = np.array(SHAPE[::-1]) - 1
-    hits = 0
-    for x, y in PIXELS[::3]:
-        found = select(scene, vtkDataObject.FIELD_ASSOCIATION_CELLS, (x, y, x, y))
-        assert set(found) == ({scene.volumes[0]} if (x, y) in expected else set())
-        if found:
-            place = to_index(volume, expected[x, y][0][None])[0]
-            if (
-                np.abs(place - np.round(place)).min() > 1e-3
-            ):  # else it may as well lie in the next cell
-                cell = place.astype(int)
-                assert found[scene.volumes[0]] == {
-                    int(cell[0] + cells[0] * (cell[1] + cells[1] * cell[2]))
-                }
-                hits += 1
-    assert hits > 10
+    check_selected(scene, image, expected, association, matrix=matrix)
+
+
+@pytest.mark.parametrize("association", [CELLS, POINTS])
+def test_the_selector_finds_what_cell_data_belong_to(association):
+    image = progiso.compress(make_image(blobs(SHAPE, 12, waves=2), cells=True), rate=16)
+    scene = ComparisonScene(ours=True)
+    show(scene, image)
+    scene.render()
+    check_selected(scene, image, first_crossings(scene, image, OPAQUE), association)
+
+
+@pytest.mark.parametrize("association", [CELLS, POINTS])
+def test_the_selector_names_another_image(image, association):
+    """Of a piece with other ghost cells, for a block of a composite data set, on a process."""
+    scene = ComparisonScene(ours=True)
+    show(scene, image)
+    scene.render()
+    low = image.GetExtent()[::2]
+    extent = [low[0] - 2, 40, low[1] - 1, 50, low[2], 60]
+    scene.mapper.SetSelectionExtent(extent)
+    scene.mapper.SetCompositeIndex(7)
+    expected = first_crossings(scene, image, OPAQUE)
+    check_selected(scene, image, expected, association, extent)
+    selector = selector_of(scene, association)
+    selector.SetProcessID(3)
+    properties = selector.Select().GetNode(0).GetProperties()
+    assert properties.Get(vtkSelectionNode.COMPOSITE_INDEX()) == 7
+    assert properties.Get(vtkSelectionNode.PROCESS_ID()) == 3
 
 
 def test_the_selector_tells_props_apart(image):

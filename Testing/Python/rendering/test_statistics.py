@@ -321,7 +321,7 @@ def test_what_colours_take(volume, settings):
     image, _ = volume
     plain, stages = feature(volume, lambda mapper: None, **settings)
     coloured, more = feature(volume, lambda mapper: mapper.SetColorInputData(image), **settings)
-    assert coloured["hits"] == 12 * PIXELS and coloured["palette"] == 16 * 257
+    assert coloured["hits"] == 12 * PIXELS and coloured["palette"] == 64 + 20 * 768
     assert coloured["cache_values"] == 2 * plain["cache_values"]
     assert more - stages == {"DecodeColors"}
     assert ("compressed_colors" in coloured) == bool(settings)
