@@ -16,7 +16,9 @@ int vtkPVIsosurfaceLODVolume::RenderOpaqueGeometry(vtkViewport* viewport)
   {
     return this->Superclass::RenderOpaqueGeometry(viewport);
   }
-  return IsosurfaceTurns::IsOpaqueTurn(this, this->FindSettings()) ? this->RenderIsosurfaces(viewport) : 0;
+  return IsosurfaceTurns::IsOpaqueTurn(this, this->FindSettings())
+    ? this->RenderIsosurfaces(viewport)
+    : 0;
 }
 
 //------------------------------------------------------------------------------
