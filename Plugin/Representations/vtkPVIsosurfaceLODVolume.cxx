@@ -43,6 +43,18 @@ vtkProgressiveIsosurfaceMapper* vtkPVIsosurfaceLODVolume::FindSettings()
 }
 
 //------------------------------------------------------------------------------
+void vtkPVIsosurfaceLODVolume::GetActors(vtkPropCollection* actors)
+{
+  if (this->GetVisibility() && !this->WarnedOfExport)
+  {
+    this->WarnedOfExport = true;
+    vtkWarningMacro("Progressive Isosurface is no mesh: exports as X3D, glTF, VRML or POV lack it; "
+                    "show a Contour, or a ZFP Contour of the compressed volume, in its place.");
+  }
+  this->Superclass::GetActors(actors);
+}
+
+//------------------------------------------------------------------------------
 bool vtkPVIsosurfaceLODVolume::ShowsOutline()
 {
   return this->SelectLOD() != this->HighLODId;
@@ -51,6 +63,7 @@ bool vtkPVIsosurfaceLODVolume::ShowsOutline()
 //------------------------------------------------------------------------------
 int vtkPVIsosurfaceLODVolume::RenderIsosurfaces(vtkViewport* viewport)
 {
+  this->WarnedOfExport = false;
   const int drawn = this->LODProp->RenderVolumetricGeometry(viewport);
   this->EstimatedRenderTime = this->LODProp->GetEstimatedRenderTime();
   return drawn;

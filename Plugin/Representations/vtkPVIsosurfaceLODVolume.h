@@ -23,6 +23,9 @@ public:
   int RenderVolumetricGeometry(vtkViewport* viewport) override;
   int RenderOverlay(vtkViewport* viewport) override;
 
+  /// Only those ask for actors who export a scene: warns, once an image, that they get none.
+  void GetActors(vtkPropCollection* actors) override;
+
 protected:
   vtkPVIsosurfaceLODVolume() = default;
   ~vtkPVIsosurfaceLODVolume() override = default;
@@ -34,6 +37,7 @@ private:
   int RenderIsosurfaces(vtkViewport* viewport);
 
   IsosurfaceTurns Turns;
+  bool WarnedOfExport = false; ///< since the last image
 
   vtkPVIsosurfaceLODVolume(const vtkPVIsosurfaceLODVolume&) = delete;
   void operator=(const vtkPVIsosurfaceLODVolume&) = delete;

@@ -90,6 +90,16 @@ amr = simple.AMRGaussianPulseSource()
 # Contour's facets of a coarse level are seen, ours not
 check_like_contour(amr, ["CELLS", "Gaussian-Pulse"], 0.2, "amr", most=0.1)
 
+# a selected cell is that of the block that is seen there
+display = session.show_isosurface(blocks, view, Isovalues=[157.0])
+session.look(view, azimuth=0, elevation=0)
+for block, column in ((1, 140), (2, 180)):
+    simple.SelectSurfaceCells(Rectangle=[column, 112, column, 112], View=view)
+    (selected,) = blocks.GetSelectionInput(0).Input
+    assert list(selected.IDs)[0] == block, (block, list(selected.IDs))
+    simple.ClearSelection(blocks)
+simple.Hide(blocks, view)
+
 # another array's colours; where a block lacks it, the solid colour
 coloured = simple.Calculator(Input=blocks, ResultArrayName="right", Function="coordsX")
 display = session.show_isosurface(

@@ -65,6 +65,17 @@ session.look(view)
 assert session.covered(session.screenshot(view, "errors_nameless.png")) > 0.05
 simple.Delete(nameless)
 
+# exports of meshes lack the surface, and say so
+exported = session.make_wavelet(10)
+session.show_isosurface(exported, view, Isovalues=[157.0])
+simple.Render(view)
+for suffix in ("x3d", "gltf"):
+    with session.messages() as listener:
+        simple.ExportView(str(session.OUTPUT / f"scene.{suffix}"), view=view)
+    assert listener.GetOutput().count("is no mesh") == 1, listener.GetOutput()
+    simple.Render(view)
+simple.Delete(exported)
+
 # points have no colours of cells: the solid colour, and a warning
 cells = simple.PointDatatoCellData(Input=session.make_wavelet(10), PassPointData=1)
 with session.messages() as listener:
