@@ -206,9 +206,15 @@ Status FindShiftedExtent(vtkImageData* image, const vtkTypeInt64 named[6], vtkTy
   {
     status = grid.FindShift(image, shift);
   }
-  for (int i = 0; i < 6 && status; ++i)
+  for (int axis = 0; axis < 3 && status; ++axis)
   {
-    extent[i] = named[i] - shift[i / 2];
+    const int low = 2 * axis, high = low + 1;
+    extent[low] = named[low] - shift[axis];
+    extent[high] = named[high] - shift[axis];
+    if (!IsBounded(extent[low], extent[high]))
+    {
+      return Status::Error("its indices along axis ", axis, " reach beyond -2^30 or 2^30");
+    }
   }
   return status;
 }

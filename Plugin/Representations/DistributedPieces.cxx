@@ -14,6 +14,7 @@
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkUnsignedCharArray.h"
 
 namespace
 {
@@ -82,9 +83,19 @@ vtkSmartPointer<vtkImageData> DistributedPieces::WithoutGhosts(vtkImageData* ima
   PieceExtents::GetExtentWithoutGhosts(image, extent);
   auto copy = vtkSmartPointer<vtkImageData>::New();
   copy->CopyStructure(image);
-  copy->GetPointData()->Initialize(); // CopyStructure() copies ghost arrays that hide
+  copy->GetPointData()->Initialize(); // CopyStructure() copies some ghost arrays
   copy->GetCellData()->Initialize();
-  copy->SetExtent(extent);
+  if (PieceExtents::IsEmpty(extent))
+  {
+    copy->SetExtent(extent);
+  }
+  else
+  {
+    // what is blanked stays so
+    copy->GetPointData()->AddArray(image->GetPointGhostArray());
+    copy->GetCellData()->AddArray(image->GetCellGhostArray());
+    copy->Crop(extent);
+  }
   copy->GetFieldData()->PassData(image->GetFieldData());
   return copy;
 }

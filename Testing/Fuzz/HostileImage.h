@@ -27,9 +27,10 @@ struct FieldArray
 const FieldArray FieldArrays[] = { { "ProgIso.ZFP.Version", 1 }, { "ProgIso.ZFP.BlockBits", 1 },
   { "ProgIso.ZFP.Dimensions", 3 }, { "ProgIso.ZFP.Range", 2 }, { "ProgIso.ZFP.ScalarType", 1 },
   { "ProgIso.ZFP.ArrayName", 1 }, { "ProgIso.ZFP.Component", 1 }, { "ProgIso.ZFP.Association", 1 },
-  { "ProgIso.ZFP.Extent", 6 }, { "ProgIso.ZFP.Stream", 1 }, { "ProgIso.ZFP.Offset", 1 },
-  { "ProgIso.ZFP.Scale", 1 }, { "ProgIso.ZFP.HiddenSamples", 2 }, { "ProgIso.ZFP.HiddenCells", 2 },
-  { "ProgIso.ZFP.PageChecksums", 1 }, { "ProgIso.ZFP.MetadataChecksum", 1 } };
+  { "ProgIso.ZFP.Extent", 6 }, { "ProgIso.ZFP.Grid", 15 }, { "ProgIso.ZFP.Stream", 1 },
+  { "ProgIso.ZFP.Offset", 1 }, { "ProgIso.ZFP.Scale", 1 }, { "ProgIso.ZFP.HiddenSamples", 2 },
+  { "ProgIso.ZFP.HiddenCells", 2 }, { "ProgIso.ZFP.PageChecksums", 1 },
+  { "ProgIso.ZFP.MetadataChecksum", 1 } };
 constexpr int NumberOfFieldArrays = sizeof(FieldArrays) / sizeof(*FieldArrays);
 
 const int ArrayTypes[] = { VTK_INT, VTK_DOUBLE, VTK_LONG_LONG, VTK_UNSIGNED_CHAR, VTK_FLOAT,
