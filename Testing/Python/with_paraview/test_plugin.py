@@ -22,6 +22,7 @@ def run(name, build, folder):
 NAMES = "show_plain show_compressed opaque zfp_files interactive errors".split()
 NAMES += "cell_data panel trace contour color_by hidden translucent blocks".split()
 NAMES += "many_isovalues magnitude still volume_state grids ranges compress".split()
+NAMES += "picking color_maps failures".split()
 
 
 @pytest.mark.parametrize("name", NAMES)

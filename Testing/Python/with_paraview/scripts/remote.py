@@ -1,5 +1,6 @@
 """A server of two processes renders; the client shows the picture, and the figures of both."""
 
+import numpy
 import server
 import session
 from paraview import servermanager, simple
@@ -19,14 +20,24 @@ def show_wavelet(name):
     return session.screenshot(view, name), session.check_converged(display), view, wavelet, display
 
 
+def picks_of(view):
+    """Return the places that ParaView finds at some pixels, on mesh points and not."""
+    places = [(x, y) for x in range(90, 240, 50) for y in range(60, 190, 40)]
+    found = [session.pick(view, *place, snap=snap) for place in places for snap in (True, False)]
+    return [place for place in found if place is not None]
+
+
 session.load_plugin()
-here, info_here, *_ = show_wavelet("remote_here.png")
+here, info_here, view, *_ = show_wavelet("remote_here.png")
+picks_here = picks_of(view)
+assert len(picks_here) > 4
 assert info_here["processes"] == 1, info_here
 assert session.covered(here) > 0.1
 
 with server.connected(PROCESSES):
     there, info, view, wavelet, display = show_wavelet("remote_there.png")
     session.check_same(here, there, tolerance=2)
+    assert numpy.allclose(picks_of(view), picks_here, atol=1e-4), "of the right process's piece"
 
     # both processes draw, and each has its part of the volume
     assert info["processes"] == PROCESSES, info

@@ -166,6 +166,13 @@ def check_close(actual, expected, what):
     )
 
 
+def pick(view, x, y, *, snap):
+    """Return the place that ParaView finds at a pixel, on a mesh point or not; None: none."""
+    position, normal = [0.0] * 3, [0.0] * 3
+    found = view.SMProxy.ConvertDisplayToPointOnSurface([x, y], position, normal, snap)
+    return numpy.array(position) if found else None
+
+
 def middle(values):
     """Return the middle of a range."""
     return 0.5 * (values[0] + values[1])
