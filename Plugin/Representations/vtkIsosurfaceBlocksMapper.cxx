@@ -5,9 +5,13 @@
 #include "BlockOrder.h"
 #include "ImageBlocks.h"
 
+#include "vtkAbstractMapper.h"
 #include "vtkBoundingBox.h"
 #include "vtkCamera.h"
 #include "vtkCommand.h"
+#include "vtkCompressedVolume.h"
+#include "vtkContourValues.h"
+#include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkMath.h"
@@ -20,7 +24,9 @@
 #include "vtkRenderWindowInteractor.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
+#include "vtkVolumeProperty.h"
 
+#include <algorithm>
 #include <numeric>
 
 namespace
@@ -47,6 +53,44 @@ Images FindImages(vtkDataObject* input)
     }
   }
   return images;
+}
+
+// Finds the range of what a mapper draws; false: there is none, and the mapper says what is wrong.
+bool FindRange(vtkProgressiveIsosurfaceMapper* mapper, double range[2])
+{
+  vtkImageData* image = vtkImageData::SafeDownCast(mapper->GetInput());
+  if (vtkCompressedVolume::IsCompressed(image))
+  {
+    vtkNew<vtkCompressedVolume> volume;
+    if (!volume->Read(image))
+    {
+      return false;
+    }
+    std::copy(volume->GetRange(), volume->GetRange() + 2, range);
+    return true;
+  }
+  int cellFlag = 0;
+  vtkDataArray* array = vtkAbstractMapper::GetScalars(image, mapper->GetScalarMode(),
+    mapper->GetArrayAccessMode(), mapper->GetArrayId(), mapper->GetArrayName(), cellFlag);
+  if (!array || mapper->GetComponent() >= array->GetNumberOfComponents())
+  {
+    return false;
+  }
+  array->GetFiniteRange(range, array->GetNumberOfComponents() == 1 ? 0 : mapper->GetComponent());
+  return true;
+}
+
+// Is an isovalue in the range of what a mapper draws, or does the mapper have to say what is wrong?
+bool HasToDraw(vtkProgressiveIsosurfaceMapper* mapper, vtkContourValues* isovalues)
+{
+  double range[2];
+  if (!FindRange(mapper, range))
+  {
+    return true;
+  }
+  const double* const values = isovalues->GetValues();
+  return std::any_of(values, values + isovalues->GetNumberOfContours(),
+    [&](double value) { return range[0] <= value && value <= range[1]; });
 }
 
 // Where the camera is, or for a parallel projection the direction towards it, among the blocks.
@@ -87,7 +131,7 @@ int vtkIsosurfaceBlocksMapper::FillInputPortInformation(int, vtkInformation* inf
 //------------------------------------------------------------------------------
 vtkDataSet* vtkIsosurfaceBlocksMapper::GetDataSetInput()
 {
-  return this->Mappers.size() == 1 ? this->Mappers.front()->GetDataSetInput() : nullptr;
+  return this->All.size() == 1 ? this->All.front()->GetDataSetInput() : nullptr;
 }
 
 //------------------------------------------------------------------------------
@@ -108,15 +152,15 @@ double* vtkIsosurfaceBlocksMapper::GetBounds()
 }
 
 //------------------------------------------------------------------------------
-bool vtkIsosurfaceBlocksMapper::UpdateInputs()
+bool vtkIsosurfaceBlocksMapper::UpdateInputs(vtkVolumeProperty* property)
 {
   if (this->GetNumberOfInputConnections(0) > 0)
   {
     this->Update();
   }
-  this->UpdateMappers();
+  this->UpdateMappers(property);
   bool all = true;
-  for (const auto& mapper : this->Mappers)
+  for (const auto& mapper : this->Drawn)
   {
     all = mapper->UpdateInputs() && all;
   }
@@ -126,51 +170,59 @@ bool vtkIsosurfaceBlocksMapper::UpdateInputs()
 //------------------------------------------------------------------------------
 void vtkIsosurfaceBlocksMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
 {
-  this->NumberOfDrawn = 0;
-  this->UpdateMappers();
+  this->NumberOfComplete = 0;
+  this->UpdateMappers(volume->GetProperty());
   const double seconds = this->FindTime(renderer->GetRenderWindow());
-  for (const auto& mapper : this->Mappers)
+  for (const auto& mapper : this->Drawn)
   {
-    mapper->SetTimeAllowance(seconds / static_cast<double>(this->Mappers.size()));
+    mapper->SetTimeAllowance(seconds / static_cast<double>(this->Drawn.size()));
   }
   for (std::size_t block : this->FindOrder(renderer, volume))
   {
-    this->Mappers[block]->Render(renderer, volume);
+    this->Drawn[block]->Render(renderer, volume);
   }
-  if (this->NumberOfDrawn == this->Mappers.size())
+  if (this->NumberOfComplete == this->Drawn.size())
   {
     this->Error.Text.clear();
   }
 }
 
 //------------------------------------------------------------------------------
-void vtkIsosurfaceBlocksMapper::UpdateMappers()
+void vtkIsosurfaceBlocksMapper::UpdateMappers(vtkVolumeProperty* property)
 {
   const Images images = FindImages(this->GetInputDataObject(0, 0));
-  for (std::size_t i = images.size(); i < this->Mappers.size(); ++i)
+  for (std::size_t i = images.size(); i < this->All.size(); ++i)
   {
-    this->Mappers[i]->ReleaseGraphicsResources(nullptr); // of whatever window
+    this->All[i]->ReleaseGraphicsResources(nullptr); // of whatever window
   }
-  this->Mappers.resize(images.size());
+  this->All.resize(images.size());
   for (std::size_t i = 0; i < images.size(); ++i)
   {
-    if (!this->Mappers[i])
+    if (!this->All[i])
     {
-      this->Mappers[i] = vtkSmartPointer<vtkProgressiveIsosurfaceMapper>::New();
-      this->Mappers[i]->AddObserver(
-        vtkCommand::ProgressEvent, this, &vtkIsosurfaceBlocksMapper::CountDrawn);
+      this->All[i] = vtkSmartPointer<vtkProgressiveIsosurfaceMapper>::New();
+      this->All[i]->AddObserver(
+        vtkCommand::ProgressEvent, this, &vtkIsosurfaceBlocksMapper::CountComplete);
       for (const unsigned long event : { vtkCommand::ErrorEvent, vtkCommand::WarningEvent })
       {
-        this->Mappers[i]->AddObserver(event, this, &vtkIsosurfaceBlocksMapper::Keep);
+        this->All[i]->AddObserver(event, this, &vtkIsosurfaceBlocksMapper::Keep);
       }
     }
-    if (this->Mappers[i]->GetInput() != images[i])
+    if (this->All[i]->GetInput() != images[i])
     {
-      this->Mappers[i]->SetInputData(images[i]);
-      this->Mappers[i]->SetCompositeIndex(ImageBlocks::GetCompositeIndex(images[i]));
+      this->All[i]->SetInputData(images[i]);
+      this->All[i]->SetCompositeIndex(ImageBlocks::GetCompositeIndex(images[i]));
     }
   }
   this->UpdateSettings();
+  this->Drawn.clear();
+  for (const auto& mapper : this->All)
+  {
+    if (this->All.size() == 1 || HasToDraw(mapper, property->GetIsoSurfaceValues()))
+    {
+      this->Drawn.push_back(mapper);
+    }
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -190,11 +242,11 @@ void vtkIsosurfaceBlocksMapper::UpdateSettings()
   this->Settings->SetCroppingRegionPlanes(this->CroppingRegionPlanes);
   this->Settings->SetCroppingRegionFlags(this->CroppingRegionFlags);
   double samples = 0.0;
-  for (const auto& mapper : this->Mappers)
+  for (const auto& mapper : this->All)
   {
     samples += static_cast<double>(mapper->GetInput()->GetNumberOfPoints());
   }
-  for (const auto& mapper : this->Mappers)
+  for (const auto& mapper : this->All)
   {
     mapper->CopySettings(this->Settings);
     mapper->SetMemoryShare(static_cast<double>(mapper->GetInput()->GetNumberOfPoints()) / samples);
@@ -208,7 +260,7 @@ std::vector<std::size_t> vtkIsosurfaceBlocksMapper::FindOrder(
   if (this->Settings->DrawsTranslucent(volume->GetProperty()))
   {
     std::vector<BlockOrder::Bounds> bounds;
-    for (const auto& mapper : this->Mappers)
+    for (const auto& mapper : this->Drawn)
     {
       bounds.emplace_back();
       mapper->GetInput()->GetBounds(bounds.back().data());
@@ -216,7 +268,7 @@ std::vector<std::size_t> vtkIsosurfaceBlocksMapper::FindOrder(
     return BlockOrder::FromBackToFront(
       bounds, FindViewer(renderer->GetActiveCamera(), volume->GetMatrix()));
   }
-  std::vector<std::size_t> order(this->Mappers.size());
+  std::vector<std::size_t> order(this->Drawn.size());
   std::iota(order.begin(), order.end(), 0);
   return order;
 }
@@ -236,7 +288,7 @@ void vtkIsosurfaceBlocksMapper::Keep(vtkObject*, unsigned long event, void* text
 //------------------------------------------------------------------------------
 void vtkIsosurfaceBlocksMapper::ReleaseGraphicsResources(vtkWindow* window)
 {
-  for (const auto& mapper : this->Mappers)
+  for (const auto& mapper : this->All)
   {
     mapper->ReleaseGraphicsResources(window);
   }
@@ -247,7 +299,7 @@ void vtkIsosurfaceBlocksMapper::ReleaseGraphicsResources(vtkWindow* window)
 void vtkIsosurfaceBlocksMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Blocks: " << this->Mappers.size() << "\n";
+  os << indent << "Blocks: " << this->All.size() << "\n";
   os << indent << "Settings:\n";
   this->Settings->PrintSelf(os, indent.GetNextIndent());
 }

@@ -22,6 +22,7 @@
 
 class vtkProgressiveIsosurfaceMapper;
 class vtkRenderWindow;
+class vtkVolumeProperty;
 
 class vtkIsosurfaceBlocksMapper : public vtkVolumeMapper
 {
@@ -33,14 +34,15 @@ public:
   /// A mapper that draws nothing: all others take over its properties.
   vtkProgressiveIsosurfaceMapper* GetSettings() { return this->Settings; }
 
-  /// The mappers of the blocks that the last render drew.
-  const std::vector<vtkSmartPointer<vtkProgressiveIsosurfaceMapper>>& GetMappers() const
-  {
-    return this->Mappers;
-  }
+  using Mappers = std::vector<vtkSmartPointer<vtkProgressiveIsosurfaceMapper>>;
 
-  /// Prepares the inputs of all blocks for the next render; false: one of them cannot be drawn.
-  bool UpdateInputs();
+  /// The mappers of the blocks that the last render drew: of several, those in whose range an
+  /// isovalue is.
+  const Mappers& GetMappers() const { return this->Drawn; }
+
+  /// Prepares the inputs of the blocks that the next render draws with a property; false: one of
+  /// them cannot be drawn.
+  bool UpdateInputs(vtkVolumeProperty* property);
 
   /// What a block's mapper has told last, and how many messages there were before and with it. The
   /// mappers do not print them. An error is empty once all blocks are drawn.
@@ -67,9 +69,9 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
 
 private:
-  /// Gives each image of the input a mapper with the settings. Those of images that have gone are
-  /// released.
-  void UpdateMappers();
+  /// Gives each image of the input a mapper with the settings, and finds those that draw. Those of
+  /// images that have gone are released.
+  void UpdateMappers(vtkVolumeProperty* property);
   void UpdateSettings();
   /// The time of a render, for all blocks. A still one is completed at once but in ParaView's own
   /// window: a Python program's may have no event loop, which would go on with it.
@@ -77,12 +79,13 @@ private:
   std::vector<std::size_t> FindOrder(vtkRenderer* renderer, vtkVolume* volume);
   /// Called for an error or a warning of a block's mapper, with VTK's text of it.
   void Keep(vtkObject* mapper, unsigned long event, void* text);
-  void CountDrawn() { ++this->NumberOfDrawn; }
+  void CountComplete() { ++this->NumberOfComplete; }
 
   vtkNew<vtkProgressiveIsosurfaceMapper> Settings;
-  std::vector<vtkSmartPointer<vtkProgressiveIsosurfaceMapper>> Mappers;
+  Mappers All;   ///< one for each block
+  Mappers Drawn; ///< of these, those in whose range an isovalue is
   Message Error, Warning;
-  std::size_t NumberOfDrawn = 0; ///< blocks in the last render
+  std::size_t NumberOfComplete = 0; ///< blocks that the last render could draw
 
   vtkIsosurfaceBlocksMapper(const vtkIsosurfaceBlocksMapper&) = delete;
   void operator=(const vtkIsosurfaceBlocksMapper&) = delete;

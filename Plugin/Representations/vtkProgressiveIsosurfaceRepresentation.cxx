@@ -102,7 +102,7 @@ int vtkProgressiveIsosurfaceRepresentation::ProcessViewRequest(
     DistributedPieces::GetNumberOfProcesses() > 1)
   {
     // What one process cannot draw is drawn by none, as if it were one: no half of a surface shows.
-    const bool good = !this->CanDraw || this->GetBlocksMapper()->UpdateInputs();
+    const bool good = !this->CanDraw || this->GetBlocksMapper()->UpdateInputs(this->Property);
     this->Actor->SetVisibility(!DistributedPieces::IsTrueAnywhere(!good) && this->CanDraw);
   }
   return 1;

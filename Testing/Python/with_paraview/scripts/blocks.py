@@ -90,6 +90,18 @@ amr = simple.AMRGaussianPulseSource()
 # Contour's facets of a coarse level are seen, ours not
 check_like_contour(amr, ["CELLS", "Gaussian-Pulse"], 0.2, "amr", most=0.1)
 
+# blocks without the isovalue cost nothing
+far = simple.GroupDatasets(
+    Input=[simple.Wavelet(WholeExtent=[-10, 0, -10, 10, -10, 10], Maximum=40.0), halves[1]]
+)
+display = session.show_isosurface(far, view, Isovalues=[157.0])
+session.screenshot(view, "blocks_one_of_two.png")
+assert 0.4 < session.check_converged(display)["budget"] / alone["budget"] < 0.6
+display.Isovalues = [157.0, 20.0]
+session.screenshot(view, "blocks_both.png")
+assert session.check_converged(display)["budget"] > 0.9 * alone["budget"]
+simple.Hide(far, view)
+
 # a selected cell is that of the block that is seen there
 display = session.show_isosurface(blocks, view, Isovalues=[157.0])
 session.look(view, azimuth=0, elevation=0)
