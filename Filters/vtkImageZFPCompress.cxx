@@ -175,6 +175,7 @@ public:
 
 private:
   Status FindArray();
+  int GetComponent() const;
   Status CheckInput(const CompressedPart& part) const;
   Status FindBlockBits(const int dims[3], const ChosenSamples& samples,
     const SampleEncoder& encoder, int& blockBits) const;
@@ -233,6 +234,16 @@ Status vtkImageZFPCompress::Work::FindArray()
 }
 
 //------------------------------------------------------------------------------
+// Returns the component of the array to compress; -1: the magnitude.
+int vtkImageZFPCompress::Work::GetComponent() const
+{
+  const int count = this->Array->GetNumberOfComponents();
+  const bool isMagnitude =
+    this->Self->MagnitudeIsLast && count > 1 && this->Self->Component == count;
+  return isMagnitude ? -1 : this->Self->Component;
+}
+
+//------------------------------------------------------------------------------
 Status vtkImageZFPCompress::Work::CheckInput(const CompressedPart& part) const
 {
   const int* dims = part.Size;
@@ -240,7 +251,7 @@ Status vtkImageZFPCompress::Work::CheckInput(const CompressedPart& part) const
     part.CellData ? this->Input->GetNumberOfCells() : this->Input->GetNumberOfPoints();
   const std::string name = NameOf(this->Array);
   const double rate = this->Self->Rate;
-  const int component = this->Self->Component;
+  const int component = this->GetComponent();
   if (vtkCompressedVolume::BlockBitsForRate(rate) == 0)
   {
     return Status::Error("Rate is ", rate, " bits per sample: it must be in (0, 32].");
@@ -305,7 +316,7 @@ Status vtkImageZFPCompress::Work::Compress(const CompressedPart& part, vtkImageD
 {
   const int* dims = part.Size;
   ChosenSamples samples;
-  if (Status status = ChooseSamples(part.CutSamples(this->Array), this->Self->Component, samples);
+  if (Status status = ChooseSamples(part.CutSamples(this->Array), this->GetComponent(), samples);
       !status)
   {
     return Status::Error("There is ", status.GetMessage(), ".");
@@ -419,6 +430,7 @@ void vtkImageZFPCompress::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Rate: " << this->Rate << " (actually " << this->GetActualRate() << ")\n";
   os << indent << "Component: " << this->Component << "\n";
+  os << indent << "MagnitudeIsLast: " << (this->MagnitudeIsLast ? "on\n" : "off\n");
   os << indent << "MaskNonFinite: " << (this->MaskNonFinite ? "on\n" : "off\n");
   os << indent << "KeepLabels: " << (this->KeepLabels ? "on\n" : "off\n");
   os << indent << "Tolerance: " << this->Tolerance << "\n";

@@ -90,6 +90,16 @@ public:
 
   ///@{
   /**
+   * Whether the number behind an array's last component also means the magnitude, as in ParaView's
+   * panels. Default off.
+   */
+  vtkSetMacro(MagnitudeIsLast, bool);
+  vtkGetMacro(MagnitudeIsLast, bool);
+  vtkBooleanMacro(MagnitudeIsLast, bool);
+  ///@}
+
+  ///@{
+  /**
    * Whether NaN and infinite samples (as float32) are hidden, as those of hidden points are, so
    * that an isosurface has a hole there, as the surface of VTK's contour filters has. Default on;
    * off: they are an error that counts them.
@@ -167,6 +177,7 @@ private:
 
   double Rate = 8.0;
   int Component = 0;
+  bool MagnitudeIsLast = false;
   bool MaskNonFinite = true;
   bool KeepLabels = false;
   double Tolerance = 0.0;

@@ -83,7 +83,10 @@ bool IsFirstProcess()
 }
 
 //------------------------------------------------------------------------------
-vtkPVCompressedImageWriter::vtkPVCompressedImageWriter() = default;
+vtkPVCompressedImageWriter::vtkPVCompressedImageWriter()
+{
+  this->Compressor->MagnitudeIsLastOn();
+}
 
 //------------------------------------------------------------------------------
 vtkPVCompressedImageWriter::~vtkPVCompressedImageWriter()

@@ -87,6 +87,12 @@ assert numpy.allclose(
 )
 assert arrays.GetArray("Normals") and arrays.GetArray("Gradients") and arrays.GetArray("RTData")
 
+# the length of vectors, as ParaView numbers it
+lengths = simple.ZFPCompress(Input=both, InputArray=["POINTS", "place"], Component=3, Rate=24)
+found = values(simple.ZFPDecompress(Input=lengths), "place")
+wanted = numpy.sqrt((values(both, "place") ** 2).sum(axis=1))
+assert numpy.allclose(found, wanted, atol=1e-3), abs(found - wanted).max()
+
 # a contour takes the place of what it is made of, also of a progressive isosurface
 display = session.show_isosurface(passed, view, Isovalues=[150.0])
 hints = surface.SMProxy.GetHints()

@@ -17,12 +17,13 @@ def values(source):
 
 wavelet = simple.Wavelet(WholeExtent=[-10, 9, -10, 10, -10, 8])
 simple.RenameSource("input", wavelet)
+simple.GetAnimationScene().NumberOfFrames = 2
 extractor = simple.CreateExtractor("ZFP", wavelet, registrationName="ZFP1")
 extractor.Writer.FileName = "volume_{timestep:04d}.vti"
 extractor.Writer.Rate = 6
 simple.SaveExtracts(ExtractsOutputDirectory=str(OUT / "saved"))
 saved = sorted((OUT / "saved").glob("*.vti"))
-assert saved
+assert len(saved) == 2, saved
 expected = values(simple.ZFPCompress(Input=wavelet, Rate=6))
 assert values(simple.OpenDataFile(str(saved[0]))) == expected
 
