@@ -617,6 +617,7 @@ ImageStatistics vtkProgressiveIsosurfaceMapper::CollectFigures(bool detailed)
   const double passes = image.Passes.empty() ? 0.0 : image.Passes.back().ElapsedMilliseconds;
   image.TotalMilliseconds = std::max(impl.TotalMilliseconds, passes);
   image.InputMilliseconds = impl.InputMilliseconds;
+  image.HostBytes = impl.Inputs.GetHostBytes();
   return image;
 }
 

@@ -148,6 +148,11 @@ vtkTypeInt64 vtkProgressiveIsosurfaceStatistics::GetMemoryBudget()
   return this->GetImage().MemoryBudget;
 }
 
+vtkTypeInt64 vtkProgressiveIsosurfaceStatistics::GetHostBytes()
+{
+  return this->GetImage().HostBytes;
+}
+
 vtkTypeInt64 vtkProgressiveIsosurfaceStatistics::GetLeastMemoryBudget()
 {
   return this->GetImage().LeastMemoryBudget;

@@ -103,6 +103,12 @@ public:
   vtkTypeInt64 GetBufferBytes(int i);
   ///@}
 
+  /**
+   * Bytes of the computer's own memory that the mapper holds beside its inputs: the compressed form
+   * of plain ones. 0 of compressed inputs, whose streams it shares.
+   */
+  vtkTypeInt64 GetHostBytes();
+
   ///@{
   /**
    * The memory budget in force, in bytes: the one set on the mapper, or else the one that it chose;

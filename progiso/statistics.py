@@ -57,7 +57,8 @@ def statistics(
         ``memory``
             GPU memory in bytes: ``buffers`` {name: bytes}, their ``total``, the part of it that is
             the ``compressed`` stream, the ``budget`` for the rest, and the ``least_budget`` that
-            would be enough.
+            would be enough; and in the computer's own memory ``host``, what a plain image's
+            compressed form takes.
         ``stages``, ``left_out``
             Names of the stages that ran, and of those that the scene did not need.
         ``stage_ms``
@@ -90,6 +91,7 @@ def statistics(
             "compressed": source.GetCompressedBytes(),
             "budget": source.GetMemoryBudget(),
             "least_budget": source.GetLeastMemoryBudget(),
+            "host": source.GetHostBytes(),
         },
         "stages": [source.GetStage(i) for i in stages],
         "left_out": [source.GetStageLeftOut(i) for i in range(source.GetNumberOfStagesLeftOut())],

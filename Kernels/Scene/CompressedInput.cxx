@@ -100,6 +100,14 @@ vtkImageData* CompressedInput::GetImage() const
   return this->Image;
 }
 
+std::int64_t CompressedInput::GetHostBytes() const
+{
+  const std::int64_t kibibytes = this->Image && std::get<vtkDataArray*>(this->Source)
+    ? static_cast<std::int64_t>(this->Image->GetActualMemorySize())
+    : 0;
+  return 1024 * kibibytes;
+}
+
 Status CompressedInput::Update(const Choice& choice)
 {
   // rate, component and mask of a compressed volume are fixed

@@ -50,6 +50,8 @@ public:
   /// The compressed image, or null.
   vtkImageData* GetImage() const;
   vtkCompressedVolume* GetVolume() const { return this->Volume; }
+  /// Bytes of host memory that a plain image's compressed form takes beside the input; 0 of others.
+  std::int64_t GetHostBytes() const;
   /// When the image last changed, or an attempt failed.
   vtkMTimeType GetTime() const { return this->Time; }
 

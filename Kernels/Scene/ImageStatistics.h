@@ -64,6 +64,7 @@ struct ImageStatistics
   std::vector<ProgramStatistics> Programs;
   std::vector<std::pair<std::string, std::int64_t>> Buffers; ///< names and bytes
   std::int64_t StreamBytes = 0;                              ///< of the compressed streams
+  std::int64_t HostBytes = 0;                                ///< beside the inputs
   std::int64_t MemoryBudget = 0;
   std::int64_t LeastMemoryBudget = 0;
   std::vector<std::pair<std::string, double>> Stages; ///< that ran, and their milliseconds

@@ -42,6 +42,11 @@ public:
   const CompressedInput& GetValues() const { return this->Values; }
   /// Without an image if no other volume gives the colours.
   const CompressedInput& GetColors() const { return this->Colors; }
+  /// Bytes of host memory that both take beside the inputs.
+  std::int64_t GetHostBytes() const
+  {
+    return this->Values.GetHostBytes() + this->Colors.GetHostBytes();
+  }
   /// When one of them last changed.
   vtkMTimeType GetTime() const;
   /// Both, as the pipeline takes them.

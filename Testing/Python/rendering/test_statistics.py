@@ -327,6 +327,19 @@ def test_what_colours_take(volume, settings):
     assert ("compressed_colors" in coloured) == bool(settings)
 
 
+def test_host_memory():
+    """A plain image is compressed there; of a compressed one the stream is shared."""
+    plain = make_image(marschner_lobb(24))
+    for image, least in ((plain, 24**3), (progiso.compress(plain, rate=8), 0)):
+        scene = Scene(image, 0.5, Camera((60, 60, 60), (12, 12, 12)), Rate=8)
+        scene.render()
+        assert least <= scene.statistics()["memory"]["host"] <= 3 * least
+    scene.mapper.SetColorInputData(plain)
+    scene.mapper.SetColorLookupTable(scene.volume.GetProperty().GetRGBTransferFunction())
+    scene.render()
+    assert 24**3 <= scene.statistics()["memory"]["host"] <= 3 * 24**3
+
+
 def test_nothing_to_see():
     """A volume out of sight or an isovalue out of range costs no decode."""
     image = progiso.compress(make_image(marschner_lobb(24)))
