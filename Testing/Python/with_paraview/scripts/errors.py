@@ -46,15 +46,16 @@ z, y, x = numpy.meshgrid(*[numpy.arange(-4, 5.0)] * 3, indexing="ij")
     return source
 
 
-strings = image_with("""
+# not `strings`: ParaView puts NumPy's names beside the script's own
+worded = image_with("""
 words = vtkStringArray()
 words.SetName("words")
 words.SetNumberOfValues(image.GetNumberOfPoints())
 image.GetPointData().AddArray(words)
 """)
-messages = show_and_listen(strings, "errors_strings.png")[1]
+messages = show_and_listen(worded, "errors_strings.png")[1]
 assert messages.count("Progressive Isosurface:") == 1 and '"words" of numbers' in messages, messages
-simple.Delete(strings)
+simple.Delete(worded)
 
 # scalars without a name, which ParaView does not list, are drawn
 nameless = image_with("""

@@ -27,21 +27,27 @@ def shoot(source, name):
     return pixels
 
 
+def paint(display, colour):
+    """Colour a display, by a map over all values: ParaView 5.13 fits maps to what is shown."""
+    simple.ColorBy(display, colour)
+    if colour:
+        display.SetScalarBarVisibility(view, False)
+        _, name, component = colour
+        values = scalars.PointData[name].GetRange({"Magnitude": -1, "X": 0}[component])
+        simple.GetColorTransferFunction(name).RescaleTransferFunction(*values)
+
+
 def show_contour(by, isovalue, colour=None):
     contour = simple.Contour(Input=scalars, ContourBy=["POINTS", by], Isosurfaces=[isovalue])
     display = simple.Show(contour, view)
     display.DiffuseColor = LOOK["DiffuseColor"]
-    simple.ColorBy(display, colour)
-    if colour:
-        display.SetScalarBarVisibility(view, False)
+    paint(display, colour)
     return shoot(contour, f"{by}_{colour and colour[2]}_contour")
 
 
 def show(isovalue, colour=None, **properties):
     display = session.show_isosurface(scalars, view, Isovalues=[isovalue], **LOOK, **properties)
-    simple.ColorBy(display, colour)
-    if colour:
-        display.SetScalarBarVisibility(view, False)
+    paint(display, colour)
     return display
 
 
