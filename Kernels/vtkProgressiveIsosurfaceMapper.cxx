@@ -41,6 +41,7 @@
 #include "vtkPointData.h"
 #include "vtkRenderer.h"
 #include "vtkScalarsToColors.h"
+#include "vtkTimerLog.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
 
@@ -98,6 +99,8 @@ vtkProgressiveIsosurfaceMapper::vtkProgressiveIsosurfaceMapper()
   : Impl(new Internals)
 {
   this->SetNumberOfInputPorts(2);
+  this->Impl->Inputs.SetProgress(
+    [this](double fraction) { this->InvokeEvent(CompressionEvent, &fraction); });
 }
 
 vtkProgressiveIsosurfaceMapper::~vtkProgressiveIsosurfaceMapper()
@@ -164,6 +167,7 @@ void vtkProgressiveIsosurfaceMapper::CopySettings(vtkProgressiveIsosurfaceMapper
   this->SetPixelsPerStraggler(other->PixelsPerStraggler);
   this->SetDetailedStatistics(other->DetailedStatistics);
   this->SetMaximumPassesPerRender(other->MaximumPassesPerRender);
+  this->SetImageReductionFactor(other->ImageReductionFactor);
   this->SetClippingPlanes(other->ClippingPlanes);
   this->SetCropping(other->Cropping);
   this->SetCroppingRegionPlanes(other->CroppingRegionPlanes);
@@ -197,6 +201,7 @@ void vtkProgressiveIsosurfaceMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "DetailedStatistics: " << this->DetailedStatistics << "\n";
   os << indent << "MaximumPassesPerRender: " << this->MaximumPassesPerRender << "\n";
   os << indent << "TimeAllowance: " << this->TimeAllowance << "\n";
+  os << indent << "ImageReductionFactor: " << this->ImageReductionFactor << "\n";
   os << indent << "Statistics:\n";
   this->Statistics->PrintSelf(os, indent.GetNextIndent());
 }
@@ -456,8 +461,9 @@ bool vtkProgressiveIsosurfaceMapper::UpdateScene(vtkRenderer* renderer, vtkVolum
   impl.Window.Get()->GetState()->vtkglGetIntegerv(GL_VIEWPORT, place);
   const int viewport[4] = { place[2], place[3], place[0], place[1] };
   const CompressedInput& values = impl.Inputs.GetValues();
-  PipelineScene scene =
-    TranslateScene(renderer, volume, this, values.GetImage(), values.GetVolume(), viewport);
+  const int reduction = renderer->GetSelector() ? 1 : this->ImageReductionFactor;
+  PipelineScene scene = TranslateScene(
+    renderer, volume, this, values.GetImage(), values.GetVolume(), viewport, reduction);
   if (!HasRays(scene.View))
   {
     return this->Fails("cannot show its input: the image's spacing, origin and directions, the "
@@ -516,9 +522,13 @@ bool vtkProgressiveIsosurfaceMapper::UpdatePipeline(bool newImage, bool mayWait)
   if (!impl.Pipeline.IsStarted() &&
     (!mayWait || empty || impl.Pipeline.AwaitPrograms(1e3 * this->TimeAllowance)))
   {
-    if (!empty && !this->Continues(impl.Pipeline.PrepareVolume()))
+    if (!empty)
     {
-      return false;
+      const vtkTimerLogScope timed("Progressive Isosurface: upload");
+      if (!this->Continues(impl.Pipeline.PrepareVolume()))
+      {
+        return false;
+      }
     }
     const Stopwatch stopwatch;
     impl.Pipeline.Start();
@@ -535,6 +545,7 @@ bool vtkProgressiveIsosurfaceMapper::Refine(vtkOpenGLRenderWindow* window)
   {
     return true; // programs are still being compiled
   }
+  const vtkTimerLogScope timed("Progressive Isosurface: render");
   const Stopwatch stopwatch;
   const double milliseconds = this->MayRefineLater(window) ? 1e3 * this->TimeAllowance : Unlimited;
   const auto stop = [&]()

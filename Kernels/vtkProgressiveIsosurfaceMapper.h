@@ -39,13 +39,15 @@
  * Needs OpenGL 4.3. Add it to a scene with a vtkIsosurfaceVolume, which draws in the opaque pass; a
  * plain vtkVolume works too, but is drawn after translucent geometry.
  *
- * Events: vtkCommand::ProgressEvent after every Render() with a double*, the completed fraction.
+ * Events: vtkCommand::ProgressEvent after every Render() with a double*, the completed fraction;
+ * CompressionEvent while plain input is compressed, likewise with the fraction that is.
  *
  * @sa vtkIsosurfaceVolume vtkProgressiveIsosurfaceStatistics vtkImageZFPCompress
  */
 #ifndef vtkProgressiveIsosurfaceMapper_h
 #define vtkProgressiveIsosurfaceMapper_h
 
+#include "vtkCommand.h"              // for UserEvent
 #include "vtkNew.h"                  // for the statistics
 #include "vtkProgIsoKernelsModule.h" // for export macro
 #include "vtkVolumeMapper.h"
@@ -72,6 +74,12 @@ public:
   static vtkProgressiveIsosurfaceMapper* New();
   vtkTypeMacro(vtkProgressiveIsosurfaceMapper, vtkVolumeMapper);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /// Events beside VTK's.
+  enum Events
+  {
+    CompressionEvent = vtkCommand::UserEvent + 4301
+  };
 
   ///@{
   /**
@@ -279,6 +287,16 @@ public:
 
   ///@{
   /**
+   * Casts one ray for a square of so many pixels of the window along each side, for renders while a
+   * camera moves on slow machines: the image is the same with larger pixels. Selections are always
+   * exact. Another factor restarts the image. Default 1.
+   */
+  vtkSetClampMacro(ImageReductionFactor, int, 1, 64);
+  vtkGetMacro(ImageReductionFactor, int);
+  ///@}
+
+  ///@{
+  /**
    * Whether the image of the last Render() is complete, and the fraction of its pixels that are
    * complete. An image is the rectangle that the volume covers in the viewport; where it covers
    * nothing it is complete at once.
@@ -300,9 +318,10 @@ public:
 
   /**
    * Fills `image` with the depths of the last Render(): float scalars "Depth", one for each pixel
-   * of the viewport in VTK's row order. A depth is the distance along the ray in world units from
-   * the camera's position (in parallel projection from the camera plane), or infinity if the ray
-   * hits no surface. Returns false, with an error event, if nothing has been rendered yet.
+   * of the viewport (fewer with an ImageReductionFactor) in VTK's row order. A depth is the
+   * distance along the ray in world units from the camera's position (in parallel projection from
+   * the camera plane), or infinity if the ray hits no surface. Returns false, with an error event,
+   * if nothing has been rendered yet.
    */
   bool GetDepthImage(vtkImageData* image);
 
@@ -391,6 +410,7 @@ protected:
   bool DetailedStatistics = false;
   int MaximumPassesPerRender = 0;
   double TimeAllowance = 0.05;
+  int ImageReductionFactor = 1;
 
 private:
   vtkProgressiveIsosurfaceMapper(const vtkProgressiveIsosurfaceMapper&) = delete;

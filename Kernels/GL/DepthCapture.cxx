@@ -28,12 +28,13 @@ GLenum DepthFormat(bool& stencil)
                  : GL_DEPTH_COMPONENT32;
 }
 
-// Copies the depths of a multisampled framebuffer into one with a single sample a pixel, and reads
-// from that until it is destroyed.
-class ResolvedDepths
+// Copies the depths of the framebuffer that is read from into another, and reads from that until it
+// is destroyed. Several samples of a pixel become one, or pixels become fewer; OpenGL does not do
+// both at once.
+class CopiedDepths
 {
 public:
-  explicit ResolvedDepths(const std::int32_t part[4])
+  CopiedDepths(const std::int32_t from[4], const std::int32_t size[2])
   {
     bool stencil = false;
     const GLenum format = DepthFormat(stencil);
@@ -41,26 +42,26 @@ public:
     glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &this->Read);
     glGenRenderbuffers(1, &this->Depths);
     glBindRenderbuffer(GL_RENDERBUFFER, this->Depths);
-    glRenderbufferStorage(GL_RENDERBUFFER, format, part[2] + part[0], part[3] + part[1]);
+    glRenderbufferStorage(GL_RENDERBUFFER, format, from[2] + size[0], from[3] + size[1]);
     glBindRenderbuffer(GL_RENDERBUFFER, 0);
     glGenFramebuffers(1, &this->Framebuffer);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, this->Framebuffer);
     glFramebufferRenderbuffer(GL_DRAW_FRAMEBUFFER,
       stencil ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, this->Depths);
-    const GLint left = part[2], bottom = part[3], right = left + part[0], top = bottom + part[1];
-    glBlitFramebuffer(
-      left, bottom, right, top, left, bottom, right, top, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+    const GLint left = from[2], bottom = from[3];
+    glBlitFramebuffer(left, bottom, left + from[0], bottom + from[1], left, bottom, left + size[0],
+      bottom + size[1], GL_DEPTH_BUFFER_BIT, GL_NEAREST);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, this->Framebuffer);
   }
-  ~ResolvedDepths()
+  ~CopiedDepths()
   {
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(this->Drawn));
     glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(this->Read));
     glDeleteFramebuffers(1, &this->Framebuffer);
     glDeleteRenderbuffers(1, &this->Depths);
   }
-  ResolvedDepths(const ResolvedDepths&) = delete;
-  void operator=(const ResolvedDepths&) = delete;
+  CopiedDepths(const CopiedDepths&) = delete;
+  void operator=(const CopiedDepths&) = delete;
 
 private:
   GLint Drawn = 0, Read = 0;
@@ -68,7 +69,7 @@ private:
 };
 }
 
-void CaptureDepths(const std::int32_t part[4], GLuint buffer, std::int64_t offset)
+void CaptureDepths(const DepthPlace& place, GLuint buffer, std::int64_t offset)
 {
   GLint drawn = 0, read = 0, samples = 0, alignment = 0;
   glGetIntegerv(GL_PACK_ALIGNMENT, &alignment);
@@ -77,11 +78,16 @@ void CaptureDepths(const std::int32_t part[4], GLuint buffer, std::int64_t offse
   glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(drawn));
   glGetIntegerv(GL_SAMPLES, &samples);
   {
-    const std::unique_ptr<ResolvedDepths> resolved(
-      samples > 0 ? new ResolvedDepths(part) : nullptr);
+    const std::int32_t* window = place.Window;
+    const bool reduced = place.Size[0] != window[0] || place.Size[1] != window[1];
+    const std::unique_ptr<CopiedDepths> resolved(
+      samples > 0 ? new CopiedDepths(window, window) : nullptr);
+    const std::unique_ptr<CopiedDepths> fewer(
+      reduced ? new CopiedDepths(window, place.Size) : nullptr);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer);
     glPixelStorei(GL_PACK_ALIGNMENT, 4);
-    glReadPixels(part[2], part[3], part[0], part[1], GL_DEPTH_COMPONENT, GL_FLOAT,
+    glReadPixels(window[2] + place.Part[2], window[3] + place.Part[3], place.Part[0], place.Part[1],
+      GL_DEPTH_COMPONENT, GL_FLOAT,
       reinterpret_cast<void*>( // NOLINT(performance-no-int-to-ptr): an offset into the buffer
         static_cast<std::intptr_t>(offset)));
     glPixelStorei(GL_PACK_ALIGNMENT, alignment);

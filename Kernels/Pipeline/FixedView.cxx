@@ -221,8 +221,10 @@ glsl::View FixView(const ViewGeometry& view)
   {
     block.ImageSize[axis] = view.ImageSize[axis];
     block.FirstPixel[axis] = view.ImageOrigin[axis];
-    block.ImageOrigin[axis] = view.ViewportOrigin[axis] + view.ImageOrigin[axis];
     block.ViewportSize[axis] = view.ViewportSize[axis];
+    block.ViewportOrigin[axis] = view.ViewportOrigin[axis];
+    block.PixelsPerFragment[axis] =
+      static_cast<float>(view.ViewportSize[axis]) / static_cast<float>(view.WindowSize[axis]);
   }
   std::copy(std::begin(view.Isovalues), std::end(view.Isovalues), block.Isovalues);
   block.NumberOfIsovalues = view.NumberOfIsovalues;

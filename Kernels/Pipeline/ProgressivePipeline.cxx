@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Pipeline/ProgressivePipeline.h"
 
-#include "GL/DepthCapture.h"
 #include "Pipeline/FixedView.h"
 #include "Pipeline/MacrocellBox.h"
 
@@ -468,8 +467,11 @@ void ProgressivePipeline::UpdateNeeds(const PipelineScene& scene)
   const ViewGeometry& view = scene.View;
   for (int axis = 0; axis < 2; ++axis)
   {
-    this->ImagePlace[axis] = view.ImageSize[axis];
-    this->ImagePlace[2 + axis] = view.ViewportOrigin[axis] + view.ImageOrigin[axis];
+    this->Place.Window[axis] = view.WindowSize[axis];
+    this->Place.Window[2 + axis] = view.ViewportOrigin[axis];
+    this->Place.Size[axis] = view.ViewportSize[axis];
+    this->Place.Part[axis] = view.ImageSize[axis];
+    this->Place.Part[2 + axis] = view.ImageOrigin[axis];
   }
   this->ImagePixels = static_cast<std::int64_t>(view.ImageSize[0]) * view.ImageSize[1];
   this->ViewportPixels = static_cast<std::int64_t>(view.ViewportSize[0]) * view.ViewportSize[1];
@@ -621,8 +623,8 @@ void ProgressivePipeline::ClearImage()
   this->Gpu->Buffers.Fill(Buffer::Layers, 0, needs);
   if (needs.Obstructed)
   {
-    CaptureDepths(this->ImagePlace, this->Gpu->Buffers.GetName(Buffer::Hits),
-      HitReadback::GetObstacleOffset(needs));
+    CaptureDepths(
+      this->Place, this->Gpu->Buffers.GetName(Buffer::Hits), HitReadback::GetObstacleOffset(needs));
   }
 }
 

@@ -9,6 +9,7 @@
 #ifndef ProgressivePipeline_h
 #define ProgressivePipeline_h
 
+#include "GL/DepthCapture.h"
 #include "GL/Device.h"
 #include "GL/Stopwatch.h"
 #include "Pipeline/CachePolicy.h"
@@ -162,7 +163,7 @@ private:
   ///@{ Of the scene, and those that blocks are marked for.
   std::vector<glsl::FloatSum> Isovalues, MarkedIsovalues;
   ///@}
-  std::int32_t ImagePlace[4] = { 0, 0, 0, 0 }; ///< width, height and origin in the window
+  DepthPlace Place; ///< of the image
   std::int64_t ImagePixels = 0;
   std::int64_t ViewportPixels = 0;
   MemoryPlan Plan;

@@ -39,7 +39,9 @@ struct ViewGeometry
   /// Samples between which the surface is drawn; beyond, they only give normals.
   std::int32_t FirstDrawn[3];
   std::int32_t LastDrawn[3];
+  /// In pixels, of which each is one of the window's, or a rectangle of them.
   std::int32_t ViewportSize[2];
+  std::int32_t WindowSize[2];     ///< of the viewport in the window's own pixels
   std::int32_t ViewportOrigin[2]; ///< in the window
   /// The image is a rectangle of the viewport, outside of which no ray meets what is drawn.
   std::int32_t ImageSize[2];

@@ -10,6 +10,7 @@
 #include "vtkImageData.h"
 #include "vtkImageZFPCompress.h"
 #include "vtkPointData.h"
+#include "vtkTimerLog.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <cstddef>
@@ -50,8 +51,32 @@ private:
   std::string Message;
 };
 
-Status Compress(const CompressedInput::Choice& choice, vtkSmartPointer<vtkImageData>& compressed)
+// Hands on the progress of a filter.
+class ProgressTeller
 {
+public:
+  ProgressTeller(vtkAlgorithm* filter, const std::function<void(double)>& receiver)
+    : Receiver(receiver)
+  {
+    filter->AddObserver(vtkCommand::ProgressEvent, this, &ProgressTeller::OnProgress);
+  }
+
+private:
+  void OnProgress(vtkObject*, unsigned long, void* fraction)
+  {
+    if (this->Receiver)
+    {
+      this->Receiver(*static_cast<double*>(fraction));
+    }
+  }
+
+  const std::function<void(double)>& Receiver;
+};
+
+Status Compress(const CompressedInput::Choice& choice, const std::function<void(double)>& progress,
+  vtkSmartPointer<vtkImageData>& compressed)
+{
+  const vtkTimerLogScope timed("Progressive Isosurface: compress");
   vtkNew<vtkImageData> single;
   single->CopyStructure(choice.Image);
   if (choice.CellData)
@@ -76,6 +101,7 @@ Status Compress(const CompressedInput::Choice& choice, vtkSmartPointer<vtkImageD
   compress->SetMaskNonFinite(choice.MaskNonFinite);
   compress->SetKeepLabels(choice.KeepLabels);
   ErrorKeeper errors(compress);
+  const ProgressTeller teller(compress, progress);
   compress->Update();
   compressed = compress->GetOutput();
   return errors.GetStatus();
@@ -130,7 +156,7 @@ Status CompressedInput::Read(const Choice& choice)
   vtkSmartPointer<vtkImageData> image = choice.Image;
   if (choice.Array)
   {
-    if (Status status = Compress(choice, image); !status)
+    if (Status status = Compress(choice, this->Progress, image); !status)
     {
       return status;
     }

@@ -13,7 +13,9 @@
 #include "vtkTimeStamp.h"
 
 #include <cstdint>
+#include <functional>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 class vtkBlockMask;
@@ -47,6 +49,9 @@ public:
   /// Drops the image.
   void Release();
 
+  /// Calls a function with the fraction that is compressed, while an array is.
+  void SetProgress(std::function<void(double)> progress) { this->Progress = std::move(progress); }
+
   /// The compressed image, or null.
   vtkImageData* GetImage() const;
   vtkCompressedVolume* GetVolume() const { return this->Volume; }
@@ -67,6 +72,7 @@ private:
   vtkNew<vtkCompressedVolume> Volume;
   Key Source;    ///< of the last attempt
   Status Result; ///< likewise
+  std::function<void(double)> Progress;
   vtkTimeStamp Time;
 };
 

@@ -77,6 +77,12 @@ Status InputArrays::UpdateColorsFromArray(const ArrayChoice& choice, vtkImageDat
     choice.MaskNonFinite, choice.KeepLabels });
 }
 
+void InputArrays::SetProgress(const std::function<void(double)>& progress)
+{
+  this->Values.SetProgress(progress);
+  this->Colors.SetProgress(progress);
+}
+
 Status InputArrays::UpdateColors(const CompressedInput::Choice& choice)
 {
   if (Status status = this->Colors.Update(choice); !status)

@@ -39,6 +39,9 @@ public:
   ///@}
   void RemoveColors() { this->Colors.Release(); }
 
+  /// Calls a function with the fraction that is compressed, while an array is.
+  void SetProgress(const std::function<void(double)>& progress);
+
   const CompressedInput& GetValues() const { return this->Values; }
   /// Without an image if no other volume gives the colours.
   const CompressedInput& GetColors() const { return this->Colors; }

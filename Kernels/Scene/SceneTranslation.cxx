@@ -34,7 +34,7 @@ void FindEyeToIndex(vtkMatrix4x4* worldToEye, vtkMatrix4x4* indexToWorld, vtkMat
 }
 
 PipelineScene TranslateScene(vtkRenderer* renderer, vtkVolume* prop, vtkVolumeMapper* mapper,
-  vtkImageData* image, vtkCompressedVolume* volume, const int viewport[4])
+  vtkImageData* image, vtkCompressedVolume* volume, const int viewport[4], int reduction)
 {
   PipelineScene scene;
   ViewGeometry& view = scene.View;
@@ -48,7 +48,11 @@ PipelineScene TranslateScene(vtkRenderer* renderer, vtkVolume* prop, vtkVolumeMa
   vtkMatrix4x4::Invert(indexToWorld, worldToIndex);
   FindEyeToIndex(worldToEye, indexToWorld, eyeToIndex);
 
-  std::copy(viewport, viewport + 2, view.ViewportSize);
+  for (int axis = 0; axis < 2; ++axis)
+  {
+    view.WindowSize[axis] = viewport[axis];
+    view.ViewportSize[axis] = (viewport[axis] + reduction - 1) / reduction;
+  }
   std::copy(viewport + 2, viewport + 4, view.ViewportOrigin);
   TranslateRays(projection, eyeToIndex, view);
   camera->GetClippingRange(view.NearDistance, view.FarDistance);

@@ -14,7 +14,8 @@ class vtkVolumeMapper;
 
 /// Translates a volume as a renderer's camera sees it: rays, image, isovalues, clipping, cropping,
 /// lights and material. `viewport`: width, height and origin, in pixels, of what is drawn into.
+/// `reduction`: how many of these pixels there are to a ray's on each axis.
 PipelineScene TranslateScene(vtkRenderer* renderer, vtkVolume* prop, vtkVolumeMapper* mapper,
-  vtkImageData* image, vtkCompressedVolume* volume, const int viewport[4]);
+  vtkImageData* image, vtkCompressedVolume* volume, const int viewport[4], int reduction);
 
 #endif

@@ -14,6 +14,7 @@ using vec3 = float[3];
 using vec4 = float[4];
 using mat3 = float[3][4]; // columns
 using ivec2 = std::int32_t[2];
+using vec2 = float[2];
 using ivec3 = std::int32_t[3];
 using uvec3 = std::uint32_t[3];
 

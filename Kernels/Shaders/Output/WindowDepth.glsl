@@ -4,7 +4,8 @@
 
 uint FragmentPixel()
 {
-  ivec2 xy = ivec2(gl_FragCoord.xy) - view.ImageOrigin;
+  vec2 inViewport = (gl_FragCoord.xy - vec2(view.ViewportOrigin)) * view.PixelsPerFragment;
+  ivec2 xy = clamp(ivec2(inViewport) - view.FirstPixel, ivec2(0), view.ImageSize - 1);
   return uint(xy.y * view.ImageSize.x + xy.x);
 }
 

@@ -74,10 +74,12 @@ UNIFORM_BLOCK(View, VIEW_BINDING)
   int NumberOfIsovalues;
   ivec3 LastDrawn;
   int NumberOfClippingPlanes;
-  ivec2 ImageSize;   // of the rectangle of the viewport that has rays
-  ivec2 ImageOrigin; // in the window
-  ivec2 FirstPixel;  // of the image, in the viewport
-  ivec2 ViewportSize;
+  ivec2 ImageSize;        // of the rectangle of the viewport that has rays
+  ivec2 FirstPixel;       // of the image, in the viewport
+  ivec2 ViewportSize;     // in pixels, of which each is one of the window's or a rectangle of them
+  ivec2 ViewportOrigin;   // in the window
+  vec2 PixelsPerFragment; // on each axis, 1 or less
+  vec2 Padding0;
   int DrawnRegions; // a bit for each cropping region
   int HasRays;      // 0: no ray meets what is drawn
   float FirstDepth; // of the origins
