@@ -77,7 +77,7 @@ const Members BlockMembers = {
   MEMBER(View, LastDrawn), MEMBER(View, NumberOfClippingPlanes),
   MEMBER(View, ImageSize), MEMBER(View, FirstPixel), MEMBER(View, ViewportSize),
   MEMBER(View, ViewportOrigin), MEMBER(View, PixelsPerFragment),
-  MEMBER(View, ViewportSize), MEMBER(View, DrawnRegions),
+  MEMBER(View, Padding0), MEMBER(View, DrawnRegions),
   MEMBER(View, HasRays), MEMBER(View, FirstDepth), MEMBER(View, DepthOfWay),
   ELEMENTS(View, Isovalues, High), ELEMENTS(View, Isovalues, Low),
   ELEMENTS(View, Isovalues, Padding0), ELEMENTS(View, Isovalues, Padding1),

@@ -207,6 +207,8 @@ void vtkIsosurfaceBlocksMapper::UpdateMappers(vtkVolumeProperty* property)
       {
         this->All[i]->AddObserver(event, this, &vtkIsosurfaceBlocksMapper::Keep);
       }
+      this->All[i]->AddObserver(vtkProgressiveIsosurfaceMapper::CompressionEvent, this,
+        &vtkIsosurfaceBlocksMapper::OnCompression);
     }
     if (this->All[i]->GetInput() != images[i])
     {
@@ -283,6 +285,12 @@ void vtkIsosurfaceBlocksMapper::Keep(vtkObject*, unsigned long event, void* text
   message.Text.erase(0, address == std::string::npos ? 0 : address + 3);
   message.Text.erase(message.Text.find_last_not_of('\n') + 1);
   ++message.Count;
+}
+
+//------------------------------------------------------------------------------
+void vtkIsosurfaceBlocksMapper::OnCompression(vtkObject*, unsigned long event, void* fraction)
+{
+  this->InvokeEvent(event, fraction);
 }
 
 //------------------------------------------------------------------------------

@@ -24,9 +24,13 @@
 #include "vtkPVView.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkPiecewiseFunction.h"
+#include "vtkPlane.h"
+#include "vtkPlaneCollection.h"
 #include "vtkPointData.h"
 #include "vtkPolyDataMapper.h"
+#include "vtkProcessModule.h"
 #include "vtkProgressiveIsosurfaceMapper.h"
+#include "vtkProgressiveIsosurfaceStatistics.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUniformGridAMR.h"
 #include "vtkVolumeProperty.h"
@@ -56,6 +60,8 @@ vtkProgressiveIsosurfaceRepresentation::vtkProgressiveIsosurfaceRepresentation()
 {
   auto mapper = vtkSmartPointer<vtkIsosurfaceBlocksMapper>::New();
   mapper->GetSettings()->LitLikeMeshesOn(); // looks like the surface of ParaView's Contour
+  mapper->AddObserver(vtkProgressiveIsosurfaceMapper::CompressionEvent, this,
+    &vtkProgressiveIsosurfaceRepresentation::ShowProgress);
   this->VolumeMapper = mapper;
   vtkMath::UninitializeBounds(this->WholeBounds);
   this->Actor = vtkSmartPointer<vtkPVIsosurfaceLODVolume>::New();
@@ -98,14 +104,47 @@ int vtkProgressiveIsosurfaceRepresentation::ProcessViewRequest(
     }
     vtkPVRenderView::SetGeometryBounds(inInfo, this, this->DataBounds, this->Actor->GetMatrix());
   }
-  else if (requestType == vtkPVView::REQUEST_RENDER() &&
-    DistributedPieces::GetNumberOfProcesses() > 1)
+  else if (requestType == vtkPVView::REQUEST_RENDER())
   {
-    // What one process cannot draw is drawn by none, as if it were one: no half of a surface shows.
-    const bool good = !this->CanDraw || this->GetBlocksMapper()->UpdateInputs(this->Property);
-    this->Actor->SetVisibility(!DistributedPieces::IsTrueAnywhere(!good) && this->CanDraw);
+    auto* view = vtkPVRenderView::SafeDownCast(inInfo->Get(vtkPVView::VIEW()));
+    const bool reduced = view && inInfo->Has(vtkPVRenderView::USE_LOD()) && this->MayReduce();
+    this->GetIsosurfaceMapper()->SetImageReductionFactor(
+      reduced ? view->GetInteractiveRenderImageReductionFactor() : 1);
+    if (DistributedPieces::GetNumberOfProcesses() > 1)
+    {
+      // What one process cannot draw is drawn by none, as if it were one: no half of a surface
+      // shows.
+      const bool good = !this->CanDraw || this->GetBlocksMapper()->UpdateInputs(this->Property);
+      this->Actor->SetVisibility(!DistributedPieces::IsTrueAnywhere(!good) && this->CanDraw);
+    }
   }
   return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::ShowProgress(vtkObject*, unsigned long, void* fraction)
+{
+  this->SetProgressText("Compressing for Progressive Isosurface");
+  this->UpdateProgress(*static_cast<double*>(fraction));
+}
+
+//------------------------------------------------------------------------------
+bool vtkProgressiveIsosurfaceRepresentation::MayReduce()
+{
+  const int process = vtkProcessModule::GetProcessType();
+  const bool remote = process == vtkProcessModule::PROCESS_SERVER ||
+    process == vtkProcessModule::PROCESS_RENDER_SERVER;
+  if (remote || DistributedPieces::GetNumberOfProcesses() > 1)
+  {
+    return false; // ParaView reduces the whole image
+  }
+  double milliseconds = 0.0;
+  for (const auto& mapper : this->GetBlocksMapper()->GetMappers())
+  {
+    const int pixelsPerRay = mapper->GetImageReductionFactor() * mapper->GetImageReductionFactor();
+    milliseconds += mapper->GetStatistics()->GetTotalMilliseconds() * pixelsPerRay;
+  }
+  return milliseconds > 1e3 * this->GetIsosurfaceMapper()->GetTimeAllowance();
 }
 
 //------------------------------------------------------------------------------
@@ -182,7 +221,10 @@ void vtkProgressiveIsosurfaceRepresentation::SetDrawn(vtkDataObject* drawn, cons
   std::copy(bounds, bounds + 6, this->DataBounds);
   this->OutlineSource->SetBounds(this->DataBounds);
   this->OutlineSource->Update();
-  this->DataSize = drawn->GetActualMemorySize();
+  // of what is drawn, which a compressed volume becomes: ParaView's LOD Threshold goes by it
+  const vtkIdType samples = drawn->GetNumberOfElements(vtkDataObject::POINT);
+  const auto decoded = static_cast<unsigned long>(samples * sizeof(float) >> 10);
+  this->DataSize = std::max(drawn->GetActualMemorySize(), decoded);
   this->Cache = drawn;
   this->Actor->SetEnableLOD(0);
 }
@@ -449,6 +491,7 @@ void vtkProgressiveIsosurfaceRepresentation::UpdateMapperParameters()
   this->UpdateCropping();
   this->UpdateLook();
   this->UpdateColors();
+  this->UpdateClipping(this->VolumeMapper);
   this->Actor->SetMapper(this->VolumeMapper);
   this->Actor->SetVisibility(this->CanDraw);
 }
@@ -493,6 +536,24 @@ void vtkProgressiveIsosurfaceRepresentation::WarnOfLostColors(const ArraySelecti
       (points ? "cells" : "points") + "; use the filter " + filter + " to colour by it");
   }
   this->LostColor = name;
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::UpdateClipping(vtkVolumeMapper* mapper)
+{
+  for (const ClipPlane& clip : this->ClipPlanes)
+  {
+    vtkPlaneCollection* planes = mapper->GetClippingPlanes();
+    const bool has = planes && planes->IsItemPresent(clip.Plane) != 0;
+    if (clip.Used && !has)
+    {
+      mapper->AddClippingPlane(clip.Plane);
+    }
+    else if (!clip.Used && has)
+    {
+      mapper->RemoveClippingPlane(clip.Plane);
+    }
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -600,6 +661,42 @@ void vtkProgressiveIsosurfaceRepresentation::SetSpeculation(bool on)
 void vtkProgressiveIsosurfaceRepresentation::SetMemoryBudget(int mebibytes)
 {
   this->GetIsosurfaceMapper()->SetMemoryBudget(static_cast<vtkTypeInt64>(mebibytes) << 20);
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetUseClipPlane(bool on)
+{
+  this->ClipPlanes[0].Used = on;
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetClipPlaneOrigin(double x, double y, double z)
+{
+  this->ClipPlanes[0].Plane->SetOrigin(x, y, z);
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetClipPlaneNormal(double x, double y, double z)
+{
+  this->ClipPlanes[0].Plane->SetNormal(x, y, z);
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetUseClipPlane2(bool on)
+{
+  this->ClipPlanes[1].Used = on;
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetClipPlaneOrigin2(double x, double y, double z)
+{
+  this->ClipPlanes[1].Plane->SetOrigin(x, y, z);
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetClipPlaneNormal2(double x, double y, double z)
+{
+  this->ClipPlanes[1].Plane->SetNormal(x, y, z);
 }
 
 //------------------------------------------------------------------------------

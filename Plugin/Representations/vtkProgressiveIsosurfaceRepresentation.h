@@ -34,7 +34,9 @@ class vtkDataArray;
 class vtkDataSet;
 class vtkImageData;
 class vtkPartitionedDataSet;
+class vtkPlane;
 class vtkProgressiveIsosurfaceMapper;
+class vtkVolumeMapper;
 namespace ImageBlocks
 {
 struct Found;
@@ -94,6 +96,19 @@ public:
   void SetMemoryBudget(int mebibytes);
   ///@}
 
+  ///@{
+  /**
+   * Two planes, in world coordinates: the surface is drawn only on the sides to which the normals
+   * of those in use point.
+   */
+  void SetUseClipPlane(bool on);
+  void SetClipPlaneOrigin(double x, double y, double z);
+  void SetClipPlaneNormal(double x, double y, double z);
+  void SetUseClipPlane2(bool on);
+  void SetClipPlaneOrigin2(double x, double y, double z);
+  void SetClipPlaneNormal2(double x, double y, double z);
+  ///@}
+
   /// Whether a rectilinear grid with uneven steps is resampled, see RectilinearImage.h; otherwise
   /// it is an error.
   void SetResampleUnevenGrids(bool on);
@@ -133,6 +148,12 @@ private:
     std::string Name;
   };
 
+  struct ClipPlane
+  {
+    bool Used = false;
+    vtkNew<vtkPlane> Plane;
+  };
+
   ///@{
   /// Sets DrawnArray from the input. Returns false if nothing can be drawn; Error says why, if it
   /// is not for other processes to draw.
@@ -168,6 +189,13 @@ private:
 
   void UpdateCropping();
 
+  /// Tells ParaView how much of a plain image is compressed, which takes a while for large ones.
+  void ShowProgress(vtkObject* caller, unsigned long event, void* fraction);
+
+  /// Whether an image of full resolution takes so long that one of fewer rays is better while the
+  /// camera moves, and nobody else reduces it.
+  bool MayReduce();
+
   /// The array that was chosen to colour by; without a name: none.
   ArraySelection GetColorArray();
 
@@ -190,6 +218,9 @@ private:
   /// Warns once of an array that the surface cannot be coloured by; without a name: there is none.
   void WarnOfLostColors(const ArraySelection& lost);
 
+  /// Gives a mapper the clip planes that are in use.
+  void UpdateClipping(vtkVolumeMapper* mapper);
+
   /// Sets the property's colours, and its opacities: a function with one node for each isovalue.
   void UpdateLook();
 
@@ -205,6 +236,7 @@ private:
   double WholeBounds[6]; ///< of the pieces of all processes
   bool ResampleUnevenGrids = false;
   bool CanDraw = false;
+  ClipPlane ClipPlanes[2];
 
   vtkProgressiveIsosurfaceRepresentation(const vtkProgressiveIsosurfaceRepresentation&) = delete;
   void operator=(const vtkProgressiveIsosurfaceRepresentation&) = delete;

@@ -16,7 +16,7 @@ vtkStandardNewMacro(vtkSMIsovalueDomain);
 //------------------------------------------------------------------------------
 void vtkSMIsovalueDomain::Update(vtkSMProperty* property)
 {
-  vtkPVArrayInformation* range = this->FindCompressedRange();
+  vtkPVArrayInformation* range = FindCompressedRange(this->GetRequiredProperty("Input"));
   if (!range)
   {
     this->Superclass::Update(property);
@@ -33,9 +33,8 @@ void vtkSMIsovalueDomain::Update(vtkSMProperty* property)
 }
 
 //------------------------------------------------------------------------------
-vtkPVArrayInformation* vtkSMIsovalueDomain::FindCompressedRange()
+vtkPVArrayInformation* vtkSMIsovalueDomain::FindCompressedRange(vtkSMProperty* inputProperty)
 {
-  vtkSMProperty* inputProperty = this->GetRequiredProperty("Input");
   if (!inputProperty)
   {
     return nullptr;

@@ -16,6 +16,7 @@
 #include "vtkSMArrayRangeDomain.h"
 
 class vtkPVArrayInformation;
+class vtkSMProperty;
 
 class VTKPROGISOREPRESENTATIONS_EXPORT vtkSMIsovalueDomain : public vtkSMArrayRangeDomain
 {
@@ -26,15 +27,15 @@ public:
 
   void Update(vtkSMProperty* property) override;
 
+  /// Finds the range of a compressed volume as ParaView has gathered it; null if what is connected
+  /// to an input property is no compressed volume.
+  static vtkPVArrayInformation* FindCompressedRange(vtkSMProperty* input);
+
 protected:
   vtkSMIsovalueDomain() = default;
   ~vtkSMIsovalueDomain() override = default;
 
 private:
-  /// Finds the compressed volume's range as ParaView has gathered it; null if the input is no
-  /// compressed volume.
-  vtkPVArrayInformation* FindCompressedRange();
-
   vtkSMIsovalueDomain(const vtkSMIsovalueDomain&) = delete;
   void operator=(const vtkSMIsovalueDomain&) = delete;
 };

@@ -14,7 +14,9 @@
 #include <QLabel>
 #include <QProgressBar>
 #include <QTableWidget>
+#include <QVBoxLayout>
 
+#include <algorithm>
 #include <cmath>
 
 namespace
@@ -46,16 +48,23 @@ QTableWidgetItem* number(const QString& text)
 pqIsosurfaceStatisticsWidget::pqIsosurfaceStatisticsWidget(
   vtkSMProxy* smproxy, vtkSMPropertyGroup* group, QWidget* parentWidget)
   : Superclass(smproxy, group, parentWidget)
-  , Completed(new QProgressBar(this))
-  , Memory(new QProgressBar(this))
-  , Image(new QLabel(this))
-  , Passes(new QTableWidget(this))
+  , Summary(new QLabel(this))
+  , Details(new QWidget(this))
+  , Completed(new QProgressBar(this->Details))
+  , Memory(new QProgressBar(this->Details))
+  , Image(new QLabel(this->Details))
+  , Passes(new QTableWidget(this->Details))
 {
+  this->setShowLabel(false);
   // the group belongs to the panel, its properties to the representation's proxy
   vtkSMProperty* first = group->GetNumberOfProperties() > 0 ? group->GetProperty(0u) : nullptr;
   this->Source = vtkSMProgressiveIsosurfaceRepresentationProxy::SafeDownCast(
     first ? first->GetParent() : nullptr);
 
+  this->Summary->setObjectName("Summary");
+  this->Summary->setWordWrap(true);
+  this->Summary->setToolTip(
+    tr("How far the last image has come, what it took, and graphics memory"));
   this->Completed->setObjectName("Completed");
   this->Completed->setRange(0, BAR_STEPS);
   this->Completed->setToolTip(tr("Part of the image that is complete"));
@@ -66,12 +75,17 @@ pqIsosurfaceStatisticsWidget::pqIsosurfaceStatisticsWidget(
   this->Image->setObjectName("Image");
   this->makeTable();
 
-  auto* form = new QFormLayout(this);
+  auto* form = new QFormLayout(this->Details);
   form->setContentsMargins(0, 0, 0, 0);
   form->addRow(tr("Completed"), this->Completed);
   form->addRow(tr("Memory"), this->Memory);
   form->addRow(tr("Image"), this->Image);
   form->addRow(this->Passes);
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(this->Summary);
+  layout->addWidget(this->Details);
+  this->updateWidget(false);
 
   if (this->Source)
   {
@@ -85,6 +99,14 @@ pqIsosurfaceStatisticsWidget::pqIsosurfaceStatisticsWidget(
 pqIsosurfaceStatisticsWidget::~pqIsosurfaceStatisticsWidget() = default;
 
 //-----------------------------------------------------------------------------
+void pqIsosurfaceStatisticsWidget::updateWidget(bool showAdvanced)
+{
+  this->Superclass::updateWidget(showAdvanced);
+  this->Summary->setVisible(!showAdvanced);
+  this->Details->setVisible(showAdvanced);
+}
+
+//-----------------------------------------------------------------------------
 void pqIsosurfaceStatisticsWidget::makeTable()
 {
   this->Passes->setObjectName("Passes");
@@ -95,8 +117,6 @@ void pqIsosurfaceStatisticsWidget::makeTable()
   this->Passes->setEditTriggers(QAbstractItemView::NoEditTriggers);
   this->Passes->setSelectionMode(QAbstractItemView::NoSelection);
   this->Passes->setFocusPolicy(Qt::NoFocus);
-  const int row = this->Passes->verticalHeader()->defaultSectionSize();
-  this->Passes->setFixedHeight((ROWS_SHOWN + 1) * row);
 }
 
 //-----------------------------------------------------------------------------
@@ -120,6 +140,9 @@ void pqIsosurfaceStatisticsWidget::showStatistics()
   }
   this->Image->setText(image);
   this->showMemory(statistics);
+  this->Summary->setText(passes == 0
+      ? tr("No image yet")
+      : tr("%1 complete: %2; %3 used").arg(percent(completed), image, this->Memory->text()));
   this->showPasses(statistics);
 }
 
@@ -146,5 +169,7 @@ void pqIsosurfaceStatisticsWidget::showPasses(vtkPVIsosurfaceInformation* statis
     this->Passes->setItem(pass, 1, number(QString::number(taken, 'f', 2)));
     this->Passes->setItem(pass, 2, number(percent(completed[pass])));
   }
+  const int row = this->Passes->verticalHeader()->defaultSectionSize();
+  this->Passes->setFixedHeight((std::clamp(passes, 1, ROWS_SHOWN) + 1) * row);
   this->Passes->scrollToBottom();
 }

@@ -5,7 +5,8 @@
  * @brief   shows in ParaView's panel how a progressive isosurface refines
  *
  * Shows the property group of a progressive isosurface's statistics: how much of the image is
- * complete, memory and its budget, and the passes with their times. It follows its
+ * complete, memory and its budget, in a line; with advanced properties also the passes with their
+ * times. It follows its
  * vtkSMProgressiveIsosurfaceRepresentationProxy, which gathers the statistics after every image,
  * and changes nothing.
  */
@@ -32,6 +33,8 @@ public:
     vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* parent = nullptr);
   ~pqIsosurfaceStatisticsWidget() override;
 
+  void updateWidget(bool showAdvanced) override;
+
 private Q_SLOTS:
   /// Shows what the proxy has gathered.
   void showStatistics();
@@ -42,6 +45,8 @@ private:
   void showPasses(vtkPVIsosurfaceInformation* statistics);
 
   vtkWeakPointer<vtkSMProgressiveIsosurfaceRepresentationProxy> Source;
+  QLabel* Summary;
+  QWidget* Details;
   QProgressBar* Completed;
   QProgressBar* Memory;
   QLabel* Image;

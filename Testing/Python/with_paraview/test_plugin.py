@@ -23,6 +23,7 @@ NAMES = "show_plain show_compressed opaque zfp_files interactive errors".split()
 NAMES += "cell_data panel trace contour color_by hidden translucent blocks".split()
 NAMES += "many_isovalues magnitude still volume_state grids ranges compress".split()
 NAMES += "picking color_maps failures".split()
+NAMES += "cutting turning lights waiting".split()
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -35,15 +36,22 @@ def test_state(build, tmp_path):
     assert run("state_save", build, tmp_path) == run("state_load", build, tmp_path)
 
 
-def test_window(build, tmp_path):
-    """ParaView's own window shows an isosurface, refined by its event loop."""
+def run_window(script, build, folder):
+    """Run a script in ParaView's own window and return what it found."""
     if not shutil.which("paraview"):
         pytest.skip("there is no `paraview`, only its Python interpreters")
     environment = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "VIRTUAL_ENV")}
-    command = ["bash", SCRIPTS / "gui.sh", build, tmp_path, f":{next(displays)}"]
+    command = ["bash", SCRIPTS / "gui.sh", build, folder, f":{next(displays)}", script]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stdout + done.stderr
-    seen = json.loads(done.stdout.splitlines()[-1])["seen"]
+    found = json.loads(done.stdout.splitlines()[-1])
+    assert "error" not in found, found["error"]
+    return found
+
+
+def test_window(build, tmp_path):
+    """ParaView's own window shows an isosurface, refined by its event loop."""
+    seen = run_window("gui_script.py", build, tmp_path)["seen"]
     completed = [image["completed"] for image in seen]
     assert completed[-1] == 1.0 and completed == sorted(completed) and completed[0] < 1.0
     assert (tmp_path / "gui_window.png").stat().st_size > 50_000
@@ -60,3 +68,33 @@ def test_window(build, tmp_path):
         )
         assert 0 < image["held"] <= image["budget"] and all(time >= 0 for time in image["times"])
     assert seen[-1]["rows"] > seen[0]["rows"] and sum(seen[-1]["times"]) > 0
+
+
+def test_panel_in_the_window(build, tmp_path):
+    """The panel's order, what it hides, its slider and what cuts, as a user has them."""
+    found = run_window("gui_panel.py", build, tmp_path)
+    assert found["default"] == "Progressive Isosurface"
+    hidden = ("Isosurface Array", "Isosurface Component", "Mask NaN", "Speculation")
+    hidden += ("Compression Rate (bits per voxel)", "Memory Budget (MiB)")
+    simple, advanced, plain = found["simple"], found["advanced"], found["plain"]
+    assert not set(hidden) & set(simple), simple
+    assert (
+        simple.index("Progressive Isosurface") < simple.index("Coloring") < simple.index("Lighting")
+    )
+    assert simple.count("Progressive Isosurface") == 1
+    assert any("complete: 1 pass" in text for text in simple), simple
+    assert {"Speculation", "Memory Budget (MiB)", "Completed"} <= set(advanced), advanced
+    assert not {"Isosurface Array", "Compression Rate (bits per voxel)"} & set(advanced), advanced
+    assert {"Isosurface Array", "Compression Rate (bits per voxel)"} <= set(plain), plain
+    assert "Isosurface Component" not in plain and "Isosurface Component" in found["vectors"]
+
+    # a drag moves the surface at once, and is one step
+    isovalues, made = zip(*found["dragged"], strict=True)
+    assert list(isovalues) == sorted(set(isovalues)) and isovalues[0] > found["before"][0]
+    assert list(made) == sorted(set(made)) and made[0] >= 1, made
+    assert found["after"][0] >= isovalues[-1] and found["redone"] == found["after"]
+    assert found["undone"] == found["before"]
+
+    assert found["cropped"] == found["clipped"] == found["second"] == 1
+    for name in ("simple", "slider", "cropping", "plane", "advanced", "plain"):
+        assert (tmp_path / f"gui_{name}.png").stat().st_size > 50_000

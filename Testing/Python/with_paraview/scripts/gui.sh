@@ -1,16 +1,18 @@
 #!/usr/bin/env bash
-# gui.sh BUILD OUTPUT [DISPLAY]
-# Starts ParaView's own window on a virtual display with the plugin of BUILD, lets gui_script.py
-# show an isosurface there, and saves OUTPUT/gui_window.png, the whole window as a user sees it, and
-# OUTPUT/gui_refining.png, the window a moment after the third image. What gui_script.py reports is
-# in OUTPUT/gui.json, what ParaView says in OUTPUT/gui.log. Needs Debian's python3-pil, which
-# ParaView's Python packages bring along, and python3-pyqt5 or, from Debian 13 on, python3-pyqt6.
+# gui.sh BUILD OUTPUT [DISPLAY] [SCRIPT]
+# Starts ParaView's own window on a virtual display with the plugin of BUILD, lets SCRIPT (default:
+# gui_script.py) show an isosurface there, and saves OUTPUT/gui_window.png, the whole window as a
+# user sees it, and OUTPUT/gui_refining.png when the script makes a file gui_refining. What the
+# script reports is in OUTPUT/gui.json, what ParaView says in OUTPUT/gui.log. Needs Debian's
+# python3-pil, which ParaView's Python packages bring along, and python3-pyqt5 or, from Debian 13 on,
+# python3-pyqt6.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 build=$(realpath "$1")
 mkdir -p "$2"
 output=$(realpath "$2")
 display=${3:-:$((100 + $$ % 400))}
+script=$here/${4:-gui_script.py}
 patience=${PROGISO_GUI_SECONDS:-240}
 
 scratch=$(mktemp -d)
@@ -51,7 +53,7 @@ ImageGrab.grab(xdisplay=sys.argv[1]).save(sys.argv[2])
 ' "$display" "$1"
 }
 export PROGISO_GUI_BUILD=$build PROGISO_GUI_OUTPUT=$output
-paraview --script="$here/gui_script.py" >"$output/gui.log" 2>&1 &
+paraview --script="$script" >"$output/gui.log" 2>&1 &
 window=$!
 for _ in $(seq "$patience"); do
   sleep 1

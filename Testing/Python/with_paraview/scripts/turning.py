@@ -1,0 +1,66 @@
+"""While the camera moves, ParaView's LOD settings say how many rays the image has.
+
+Where an image of full resolution takes long, the image has larger pixels meanwhile, as many as
+ImageReductionFactor; below LODThreshold, and still, it has all.
+"""
+
+import numpy
+import session
+from paraview import simple
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
+
+view = session.start([400, 300])
+wavelet = session.make_wavelet(32)
+display = session.show_isosurface(wavelet, view, Isovalues=[150.0])
+session.look(view)
+still = session.screenshot(view, "turning_still.png")
+
+
+def moved():
+    """Return the picture of a moving camera, when it is complete."""
+    view.SMProxy.InteractiveRender()
+    while session.information(display)["completed"] < 1.0:
+        view.SMProxy.InteractiveRender()
+    data = vtkUnsignedCharArray()
+    window = view.SMProxy.GetRenderWindow()
+    width, height = window.GetSize()
+    window.GetRGBACharPixelData(0, 0, width - 1, height - 1, 1, data)
+    return vtk_to_numpy(data).reshape(height, width, 4)[:, :, :3].astype(int)
+
+
+def pixels_per_side(picture):
+    """Return the side of the squares that an image is made of."""
+    for side in (8, 4, 3, 2):
+        rows, columns = picture.shape[0] // side * side, picture.shape[1] // side * side
+        squares = picture[:rows, :columns].reshape(rows // side, side, columns // side, side, 3)
+        if (squares == squares[:, :1, :, :1]).all():
+            return side
+    return 1
+
+
+assert pixels_per_side(still) == 1
+full = moved()
+assert pixels_per_side(full) == 1, "the data lie below LODThreshold"
+view.LODThreshold = 0.0
+assert pixels_per_side(moved()) == view.ImageReductionFactor == 2
+session.check_same(still, session.screenshot(view, "turning_again.png"))
+view.ImageReductionFactor = 4
+coarse = moved()
+assert pixels_per_side(coarse) == 4
+assert abs(session.covered(coarse) - session.covered(still)) < 0.02
+view.ImageReductionFactor = 1
+session.check_same(full, moved())
+view.ImageReductionFactor = 4
+
+# a translucent surface among opaque geometry ends at it in the coarse image, too
+display.Opacity = 0.4
+sphere = simple.Show(simple.Sphere(Radius=14.0, ThetaResolution=48, PhiResolution=48), view)
+sphere.DiffuseColor = [1.0, 0.0, 0.0]
+exact = session.screenshot(view, "turning_sphere.png")
+coarse = moved()
+assert abs(exact - coarse).mean() < 6.0, abs(exact - coarse).mean()
+simple.Render(view)
+session.check_same(exact, session.screenshot(view, "turning_sphere_again.png"))
+
+session.finish(difference=float(abs(exact - coarse).mean()), size=numpy.shape(still))

@@ -1,0 +1,42 @@
+"""What takes time is told: compression in ParaView's progress bar, all work in its Timer Log.
+
+And what a compressed volume comes up as, from our sources and from ParaView's reader.
+"""
+
+import session
+from paraview import servermanager, simple
+from vtkmodules.vtkCommonSystem import vtkTimerLog
+
+view = session.start()
+handler = servermanager.ActiveConnection.Session.GetProgressHandler()
+told = []
+handler.AddObserver("ProgressEvent", lambda *_: told.append(handler.GetLastProgressText()))
+
+vtkTimerLog.SetMaxEntries(10000)
+vtkTimerLog.ResetLog()
+wavelet = session.make_wavelet()
+display = session.show_isosurface(wavelet, view, Isovalues=[150.0])
+simple.Render(view)
+assert any("Compressing" in text for text in told), told
+log = {vtkTimerLog.GetEventString(event) for event in range(vtkTimerLog.GetNumberOfEvents())}
+assert {f"Progressive Isosurface: {work}" for work in ("compress", "upload", "render")} <= log, log
+told.clear()
+display.Isovalues = [160.0]
+simple.Render(view)
+assert not any("Compressing" in text for text in told), told
+simple.Hide(wavelet, view)
+
+# compressed volumes come up as what they are good for, all else as before
+defaults = {"plain": simple.Show(session.make_wavelet(8), view).Representation[0]}
+compressed = simple.ZFPCompress(Input=wavelet, Rate=4)
+defaults["filter"] = simple.Show(compressed, view).Representation[0]
+for suffix in ("zfp", "vti"):
+    path = str(session.OUTPUT / f"waiting.{suffix}")
+    simple.SaveData(path, compressed)
+    defaults[suffix] = simple.Show(simple.OpenDataFile(path), view).Representation[0]
+chosen = simple.CreateRenderView()
+defaults["chosen"] = simple.Show(compressed, chosen, Representation="Outline").Representation[0]
+expected = dict.fromkeys(defaults, session.PROGRESSIVE_ISOSURFACE)
+assert defaults == {**expected, "plain": "Outline", "chosen": "Outline"}, defaults
+
+session.finish(told=len(told), **defaults)
