@@ -7,6 +7,8 @@
 
 #include <vtkImageZFPDecompress.h>
 
+#include <algorithm>
+
 namespace
 {
 using namespace fuzz;
@@ -85,12 +87,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   CHECK(volume->Read(compress->GetOutput()), volume->GetErrorMessage());
   vtkNew<vtkImageZFPCompress> repeat;
   repeat->SetRate(compress->GetRate());
+  repeat->MaskNonFiniteOff(); // values that overflowed are to be refused, not hidden
   repeat->SetInputData(Decompress(compress->GetOutput()));
   if (Update(repeat))
   {
     CHECK(again->Read(repeat->GetOutput()), again->GetErrorMessage());
-    CHECK(again->GetHiddenSamples() == volume->GetHiddenSamples() &&
-        again->GetHiddenCells() == volume->GetHiddenCells(),
+    // a piece comes back without the samples around it, and without their marks
+    const bool isWhole =
+      std::equal(volume->GetExtent(), volume->GetExtent() + 6, again->GetExtent());
+    CHECK(!isWhole ||
+        (again->GetHiddenSamples() == volume->GetHiddenSamples() &&
+          again->GetHiddenCells() == volume->GetHiddenCells()),
       "another mask");
     Decompress(repeat->GetOutput());
   }
