@@ -107,9 +107,9 @@ int vtkProgressiveIsosurfaceRepresentation::ProcessViewRequest(
   else if (requestType == vtkPVView::REQUEST_RENDER())
   {
     auto* view = vtkPVRenderView::SafeDownCast(inInfo->Get(vtkPVView::VIEW()));
-    const bool reduced = view && inInfo->Has(vtkPVRenderView::USE_LOD()) && this->MayReduce();
+    const bool reduced = view && inInfo->Has(vtkPVRenderView::USE_LOD());
     this->GetIsosurfaceMapper()->SetImageReductionFactor(
-      reduced ? view->GetInteractiveRenderImageReductionFactor() : 1);
+      reduced ? this->FindReduction(view->GetInteractiveRenderImageReductionFactor()) : 1);
     if (DistributedPieces::GetNumberOfProcesses() > 1)
     {
       // What one process cannot draw is drawn by none, as if it were one: no half of a surface
@@ -129,14 +129,14 @@ void vtkProgressiveIsosurfaceRepresentation::ShowProgress(vtkObject*, unsigned l
 }
 
 //------------------------------------------------------------------------------
-bool vtkProgressiveIsosurfaceRepresentation::MayReduce()
+int vtkProgressiveIsosurfaceRepresentation::FindReduction(int wanted)
 {
   const int process = vtkProcessModule::GetProcessType();
   const bool remote = process == vtkProcessModule::PROCESS_SERVER ||
     process == vtkProcessModule::PROCESS_RENDER_SERVER;
-  if (remote || DistributedPieces::GetNumberOfProcesses() > 1)
+  if (wanted <= 1 || remote || DistributedPieces::GetNumberOfProcesses() > 1)
   {
-    return false; // ParaView reduces the whole image
+    return 1; // ParaView reduces the whole image
   }
   double milliseconds = 0.0;
   for (const auto& mapper : this->GetBlocksMapper()->GetMappers())
@@ -144,7 +144,13 @@ bool vtkProgressiveIsosurfaceRepresentation::MayReduce()
     const int pixelsPerRay = mapper->GetImageReductionFactor() * mapper->GetImageReductionFactor();
     milliseconds += mapper->GetStatistics()->GetTotalMilliseconds() * pixelsPerRay;
   }
-  return milliseconds > 1e3 * this->GetIsosurfaceMapper()->GetTimeAllowance();
+  const double allowed = 1e3 * this->GetIsosurfaceMapper()->GetTimeAllowance();
+  int factor = milliseconds > allowed ? wanted : 1;
+  while (factor < 2 * wanted && milliseconds > allowed * factor * factor)
+  {
+    ++factor;
+  }
+  return factor;
 }
 
 //------------------------------------------------------------------------------
