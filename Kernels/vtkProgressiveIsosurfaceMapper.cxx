@@ -462,8 +462,11 @@ bool vtkProgressiveIsosurfaceMapper::UpdateScene(vtkRenderer* renderer, vtkVolum
   const int viewport[4] = { place[2], place[3], place[0], place[1] };
   const CompressedInput& values = impl.Inputs.GetValues();
   const int reduction = renderer->GetSelector() ? 1 : this->ImageReductionFactor;
+  const int litSides = !renderer->GetTwoSidedLighting() ? glsl::ONE_SIDED
+    : this->LitLikeMeshes                               ? glsl::LIT_LIKE_MESHES
+                                                        : glsl::TWO_SIDED;
   PipelineScene scene = TranslateScene(
-    renderer, volume, this, values.GetImage(), values.GetVolume(), viewport, reduction);
+    renderer, volume, this, values.GetImage(), values.GetVolume(), viewport, reduction, litSides);
   if (!HasRays(scene.View))
   {
     return this->Fails("cannot show its input: the image's spacing, origin and directions, the "
@@ -473,10 +476,6 @@ bool vtkProgressiveIsosurfaceMapper::UpdateScene(vtkRenderer* renderer, vtkVolum
   {
     return this->Fails("cannot show its input: rays would cross 2^29 voxels and more on their way "
                        "through it; resample the image to spacings that differ less");
-  }
-  if (this->LitLikeMeshes && scene.Look.LitSides == glsl::TWO_SIDED)
-  {
-    scene.Look.LitSides = glsl::LIT_LIKE_MESHES;
   }
   vtkScalarsToColors* table = this->ColorLookupTable
     ? this->ColorLookupTable

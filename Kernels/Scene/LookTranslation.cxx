@@ -129,16 +129,17 @@ void TranslateMaterial(vtkVolumeProperty* property, glsl::Look& look)
 }
 
 void TranslateShading(
-  vtkLightCollection* lights, bool twoSided, vtkMatrix4x4* worldToEye, PipelineScene& scene)
+  vtkLightCollection* lights, int litSides, vtkMatrix4x4* worldToEye, PipelineScene& scene)
 {
   glsl::Look& look = scene.Look;
   TranslateLights(lights, worldToEye, look);
-  look.LitSides = twoSided ? glsl::TWO_SIDED : glsl::ONE_SIDED;
+  look.LitSides = litSides;
+  const float left = look.Ambient + (litSides == glsl::LIT_LIKE_MESHES ? look.Diffuse : 0.0f);
   for (int i = 0; i < scene.View.NumberOfIsovalues && look.NumberOfLights == 0; ++i)
   {
     for (float& channel : look.Colors[i].Rgb)
     {
-      channel *= look.Ambient;
+      channel *= std::min(left, 1.0f);
     }
   }
 }

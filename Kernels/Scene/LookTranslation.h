@@ -18,9 +18,10 @@ void TranslateIsovalues(
 
 void TranslateMaterial(vtkVolumeProperty* property, glsl::Look& look);
 
-/// Translates the lights that are switched on. Without one, ambient light alone is left: the
-/// colours are darkened here, and no normal is needed.
+/// Translates the lights that are switched on, which reach `litSides` (see Constants.glsl.h).
+/// Without one no normal is needed, and the colours are darkened here: ambient light alone is left,
+/// or as VTK has it of meshes, ambient and diffuse light.
 void TranslateShading(
-  vtkLightCollection* lights, bool twoSided, vtkMatrix4x4* worldToEye, PipelineScene& scene);
+  vtkLightCollection* lights, int litSides, vtkMatrix4x4* worldToEye, PipelineScene& scene);
 
 #endif

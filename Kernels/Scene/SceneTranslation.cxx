@@ -34,7 +34,8 @@ void FindEyeToIndex(vtkMatrix4x4* worldToEye, vtkMatrix4x4* indexToWorld, vtkMat
 }
 
 PipelineScene TranslateScene(vtkRenderer* renderer, vtkVolume* prop, vtkVolumeMapper* mapper,
-  vtkImageData* image, vtkCompressedVolume* volume, const int viewport[4], int reduction)
+  vtkImageData* image, vtkCompressedVolume* volume, const int viewport[4], int reduction,
+  int litSides)
 {
   PipelineScene scene;
   ViewGeometry& view = scene.View;
@@ -67,8 +68,7 @@ PipelineScene TranslateScene(vtkRenderer* renderer, vtkVolume* prop, vtkVolumeMa
   TranslateMaterial(property, scene.Look);
   if (property->GetShade())
   {
-    TranslateShading(
-      renderer->GetLights(), renderer->GetTwoSidedLighting() != 0, worldToEye, scene);
+    TranslateShading(renderer->GetLights(), litSides, worldToEye, scene);
   }
   return scene;
 }

@@ -14,8 +14,10 @@ class vtkVolumeMapper;
 
 /// Translates a volume as a renderer's camera sees it: rays, image, isovalues, clipping, cropping,
 /// lights and material. `viewport`: width, height and origin, in pixels, of what is drawn into.
-/// `reduction`: how many of these pixels there are to a ray's on each axis.
+/// `reduction`: how many of these pixels there are to a ray on each axis. `litSides`: see
+/// Constants.glsl.h.
 PipelineScene TranslateScene(vtkRenderer* renderer, vtkVolume* prop, vtkVolumeMapper* mapper,
-  vtkImageData* image, vtkCompressedVolume* volume, const int viewport[4], int reduction);
+  vtkImageData* image, vtkCompressedVolume* volume, const int viewport[4], int reduction,
+  int litSides);
 
 #endif

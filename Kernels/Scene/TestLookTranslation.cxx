@@ -101,7 +101,7 @@ TEST_F(LookTranslation, LightsThatAreOffDoNotCount)
   lights->AddItem(off);
   lights->AddItem(sun);
   lights->AddItem(spot);
-  TranslateShading(lights, true, this->WorldToEye, this->Scene);
+  TranslateShading(lights, glsl::TWO_SIDED, this->WorldToEye, this->Scene);
   const glsl::Look& look = this->Scene.Look;
   ASSERT_EQ(look.NumberOfLights, 2);
   EXPECT_EQ(look.LitSides, glsl::TWO_SIDED);
@@ -120,8 +120,19 @@ TEST_F(LookTranslation, InTheDarkAmbientLightIsLeft)
   TranslateIsovalues(this->Property, this->Volume, this->Scene);
   TranslateMaterial(this->Property, this->Scene.Look);
   vtkNew<vtkLightCollection> lights;
-  TranslateShading(lights, false, this->WorldToEye, this->Scene);
+  TranslateShading(lights, glsl::ONE_SIDED, this->WorldToEye, this->Scene);
   EXPECT_EQ(this->Scene.Look.NumberOfLights, 0);
   EXPECT_EQ(this->Scene.Look.LitSides, glsl::ONE_SIDED);
   EXPECT_EQ(this->Scene.Look.Colors[0].Rgb[1], 0.25f);
+}
+
+TEST_F(LookTranslation, LikeMeshesDiffuseLightIsLeftToo)
+{
+  TranslateIsovalues(this->Property, this->Volume, this->Scene);
+  this->Scene.Look.Ambient = 0.25f;
+  this->Scene.Look.Diffuse = 0.5f;
+  const float color = this->Scene.Look.Colors[0].Rgb[1];
+  vtkNew<vtkLightCollection> lights;
+  TranslateShading(lights, glsl::LIT_LIKE_MESHES, this->WorldToEye, this->Scene);
+  EXPECT_EQ(this->Scene.Look.Colors[0].Rgb[1], 0.75f * color);
 }

@@ -37,6 +37,7 @@ view.KeyLightIntensity, view.KeyLightWarmth, view.KeyLightElevation = 0.4, 0.9, 
 compare("other_kit")
 assert abs(pictures["other_kit"] - pictures["kit"]).mean() > 3
 view.UseLight = 0
+compare("none")
 light = simple.AddLight(view=view)
 for name, settings in {
     "headlight_red": {"Coords": "Headlight", "DiffuseColor": [1.0, 0.2, 0.1]},
