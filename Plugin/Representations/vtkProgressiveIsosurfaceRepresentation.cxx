@@ -670,6 +670,12 @@ void vtkProgressiveIsosurfaceRepresentation::SetMemoryBudget(int mebibytes)
 }
 
 //------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetFrameTime(double milliseconds)
+{
+  this->GetIsosurfaceMapper()->SetTimeAllowance(1e-3 * milliseconds);
+}
+
+//------------------------------------------------------------------------------
 void vtkProgressiveIsosurfaceRepresentation::SetUseClipPlane(bool on)
 {
   this->ClipPlanes[0].Used = on;

@@ -88,12 +88,14 @@ public:
   ///@{
   /**
    * Properties of the mapper: bits per voxel for plain data, whether NaN in them is hidden,
-   * speculation on or off, and the memory budget in mebibytes (0: automatic).
+   * speculation on or off, the memory budget in mebibytes (0: automatic), and the milliseconds that
+   * an image may take before it is shown, or has fewer rays while the camera moves.
    */
   void SetRate(double bitsPerVoxel);
   void SetMaskNonFinite(bool on);
   void SetSpeculation(bool on);
   void SetMemoryBudget(int mebibytes);
+  void SetFrameTime(double milliseconds);
   ///@}
 
   ///@{

@@ -221,7 +221,7 @@ bool IntersectBlock(Ray ray, GridPlace place, BlockCrossing crossing, out Hit hi
   uvec2 known = KnownCells(place.Block);
   for (int tested = 0; tested < 16; ++tested) // a ray crosses at most 10 cells of 4^3
   {
-    Corners w;
+    Corners w = Corners(vec4(0.0), vec4(0.0));
     Wide t1;
     bool last;
     bool crossed = false;

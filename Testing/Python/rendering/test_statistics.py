@@ -41,7 +41,8 @@ def test_keys(scene):
             "gl",
         )
     }
-    assert set(statistics["memory"]) == {"buffers", "total", "compressed", "budget", "least_budget"}
+    memory = {"buffers", "total", "compressed", "budget", "least_budget", "host"}
+    assert set(statistics["memory"]) == memory
     assert set(statistics["camera"]) >= {
         "position",
         "focal_point",

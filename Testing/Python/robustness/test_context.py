@@ -19,7 +19,7 @@ from helpers.scenes import CACHED
     "file", ["BlockRanges.comp", "CastRays.comp", "PlanPass.comp", "Composite.frag"]
 )
 def test_a_shader_does_not_compile(image, file):
-    """There is one error a render, with the compiler's own words, for as long as that is so."""
+    """Every render tries again; the first tells of it, in the compiler's own words."""
     scene = ComparisonScene(ours=True)
     scene.render()  # makes the context
     show(scene, image, OPAQUE, **CACHED).GetProperty().ShadeOn()
@@ -31,11 +31,12 @@ def test_a_shader_does_not_compile(image, file):
         original(shader, count, strings, lengths)
 
     with intercepted("glShaderSource", refuse):
-        for _ in range(2):
-            (message,), picture = messages_of(scene)
-            assert (
-                f"shader {file.split('.')[0]} does not build on this driver" in message
-                and "no such luck" in message
+        for first in (True, False):
+            messages, picture = messages_of(scene)
+            assert len(messages) == first
+            assert not first or (
+                f"shader {file.split('.')[0]} does not build on this driver" in messages[0]
+                and "no such luck" in messages[0]
             )
             assert is_empty(picture) and not gl_errors() and not scene.mapper.GetConverged()
     assert np.ptp(scene.picture().reshape(-1, 3), axis=0).max() > 50
@@ -74,12 +75,14 @@ import progiso
 
 scene = ComparisonScene(ours=True)
 show(scene, progiso.compress(make_image(blobs((16, 16, 16), 12)), rate=8), OPAQUE)
+told = []
 for _ in range(2):
     with vtk_messages() as messages:
         scene.window.Render()
     assert np.ptp(picture_of(scene.window).reshape(-1, 3), axis=0).max() == 0
-    assert len(messages) == 1, messages
-print(*messages)
+    told += messages
+assert len(told) == 1, told
+print(*told)
 """
 
 

@@ -1,8 +1,8 @@
 """While the camera moves, ParaView's LOD settings say how many rays the image has.
 
-Where an image of full resolution takes long, the image has larger pixels meanwhile, as many as
-ImageReductionFactor, or up to twice that on a slow machine; below LODThreshold, and still, it has
-all.
+Where an image takes longer than FrameTime, it has larger pixels meanwhile: squares of
+ImageReductionFactor, of up to twice that where those take too long, too; below LODThreshold, and
+still, it has all.
 """
 
 import numpy
@@ -11,7 +11,7 @@ from paraview import simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 
-view = session.start([400, 300])
+view = session.start([400, 304])  # all reductions divide it
 wavelet = session.make_wavelet(32)
 display = session.show_isosurface(wavelet, view, Isovalues=[150.0])
 session.look(view)
@@ -44,11 +44,14 @@ assert pixels_per_side(still) == 1
 full = moved()
 assert pixels_per_side(full) == 1, "the data lie below LODThreshold"
 view.LODThreshold = 0.0
-assert view.ImageReductionFactor == 2 <= pixels_per_side(moved()) <= 4
+display.FrameTime = 1e6
+assert pixels_per_side(moved()) == 1, "the image takes less than FrameTime"
+display.FrameTime = 0.0  # every image takes longer
+assert pixels_per_side(moved()) == 2 * view.ImageReductionFactor == 4
 session.check_same(still, session.screenshot(view, "turning_again.png"))
 view.ImageReductionFactor = 4
 coarse = moved()
-assert 4 <= pixels_per_side(coarse) <= 8
+assert pixels_per_side(coarse) == 8
 assert abs(session.covered(coarse) - session.covered(still)) < 0.02
 view.ImageReductionFactor = 1
 session.check_same(full, moved())
