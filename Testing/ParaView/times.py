@@ -2,9 +2,9 @@
 
     pvpython times.py BUILD OUTPUT [SIDE]
 
-BUILD holds the plugin; the wavelet has SIDE samples a side, 256 by default. Ways are shown in turns, so that what
-else the machine does meets all of them, and each figure is a median. Prints a table in Markdown. Wants a display
-(README.md).
+BUILD holds the plugin; the wavelet has SIDE samples a side, 256 by default. Ways take turns, so
+that what else the machine does meets all of them; each figure is a median. Prints a table in
+Markdown. Wants a display (README.md).
 """
 
 import pathlib
@@ -117,7 +117,7 @@ def main():
         for way in ways:
             way.round(OTHERS[number % len(OTHERS)])
     columns = ("first image", "turning", "still after turning", "new isovalue")
-    print("| seconds | " + " | ".join(columns) + " |\n|---" * 1 + "|---" * len(columns) + "|")
+    print("| seconds | " + " | ".join(columns) + " |\n|---" + "|---" * len(columns) + "|")
     for way in ways:
         cells = [
             f"{statistics.median(way.times[c]):.2f}" if c in way.times else "" for c in columns
