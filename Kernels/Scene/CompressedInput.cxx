@@ -2,55 +2,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Scene/CompressedInput.h"
 
+#include "FirstError.h"
+
 #include "vtkCellData.h"
 #include "vtkCommand.h"
 #include "vtkCompressedVolume.h"
 #include "vtkDataArray.h"
-#include "vtkExecutive.h"
 #include "vtkImageData.h"
 #include "vtkImageZFPCompress.h"
 #include "vtkPointData.h"
 #include "vtkTimerLog.h"
 #include "vtkUnsignedCharArray.h"
 
-#include <cstddef>
 #include <memory>
 #include <string>
 
 namespace
 {
-// Keeps the first error of a filter, in place of VTK's printing it.
-class ErrorKeeper
-{
-public:
-  explicit ErrorKeeper(vtkAlgorithm* filter)
-  {
-    filter->AddObserver(vtkCommand::ErrorEvent, this, &ErrorKeeper::OnError);
-    // the executive reports a second error, that the filter failed
-    filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, this, &ErrorKeeper::OnError);
-  }
-
-  Status GetStatus() const { return this->HasError ? Status::Error(this->Message) : Status(); }
-
-private:
-  // The text is "ERROR: In file, line number\nclass (address): message\n\n".
-  void OnError(vtkObject*, unsigned long, void* text)
-  {
-    if (this->HasError)
-    {
-      return;
-    }
-    this->HasError = true;
-    this->Message = static_cast<const char*>(text);
-    const std::size_t address = this->Message.find("): ");
-    this->Message.erase(0, address == std::string::npos ? 0 : address + 3);
-    this->Message.erase(this->Message.find_last_not_of('\n') + 1);
-  }
-
-  bool HasError = false;
-  std::string Message;
-};
-
 // Hands on the progress of a filter.
 class ProgressTeller
 {
@@ -100,7 +68,7 @@ Status Compress(const CompressedInput::Choice& choice, const std::function<void(
   compress->SetComponent(choice.Component);
   compress->SetMaskNonFinite(choice.MaskNonFinite);
   compress->SetKeepLabels(choice.KeepLabels);
-  ErrorKeeper errors(compress);
+  const FirstError errors(compress);
   const ProgressTeller teller(compress, progress);
   compress->Update();
   compressed = compress->GetOutput();

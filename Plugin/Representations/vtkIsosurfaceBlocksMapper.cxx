@@ -3,6 +3,7 @@
 #include "vtkIsosurfaceBlocksMapper.h"
 
 #include "BlockOrder.h"
+#include "FirstError.h"
 #include "ImageBlocks.h"
 
 #include "vtkAbstractMapper.h"
@@ -276,14 +277,10 @@ std::vector<std::size_t> vtkIsosurfaceBlocksMapper::FindOrder(
 }
 
 //------------------------------------------------------------------------------
-// The text is "ERROR: In file, line number\nclass (address): message\n\n", or "Warning: …".
 void vtkIsosurfaceBlocksMapper::Keep(vtkObject*, unsigned long event, void* text)
 {
   Message& message = event == vtkCommand::ErrorEvent ? this->Error : this->Warning;
-  message.Text = static_cast<const char*>(text);
-  const std::size_t address = message.Text.find("): ");
-  message.Text.erase(0, address == std::string::npos ? 0 : address + 3);
-  message.Text.erase(message.Text.find_last_not_of('\n') + 1);
+  message.Text = MessageOfEvent(text);
   ++message.Count;
 }
 

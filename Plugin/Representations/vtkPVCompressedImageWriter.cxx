@@ -3,18 +3,17 @@
 #include "vtkPVCompressedImageWriter.h"
 
 #include "DistributedPieces.h"
+#include "FirstError.h"
 #include "GatheredImage.h"
 #include "Status.h"
 
 #include "vtkAlgorithmOutput.h"
 #include "vtkCellData.h"
-#include "vtkCommand.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkCompressedVolume.h"
 #include "vtkDataArray.h"
 #include "vtkErrorCode.h"
-#include "vtkExecutive.h"
 #include "vtkImageData.h"
 #include "vtkImageZFPCompress.h"
 #include "vtkInformation.h"
@@ -34,35 +33,6 @@ vtkStandardNewMacro(vtkPVCompressedImageWriter);
 
 namespace
 {
-//------------------------------------------------------------------------------
-// Runs a filter or a writer, and returns its first error in place of showing it.
-class ErrorCatcher
-{
-public:
-  explicit ErrorCatcher(vtkAlgorithm* algorithm)
-  {
-    algorithm->AddObserver(vtkCommand::ErrorEvent, this, &ErrorCatcher::OnError);
-    algorithm->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, this, &ErrorCatcher::OnError);
-  }
-
-  Status GetStatus() const { return this->First; }
-
-private:
-  // The text is "ERROR: In file, line number\nclass (address): message\n\n".
-  void OnError(vtkObject*, unsigned long, void* data)
-  {
-    if (this->First.IsOk())
-    {
-      const std::string text = static_cast<const char*>(data);
-      const std::size_t address = text.find("): ");
-      const std::size_t begin = address == std::string::npos ? 0 : address + 3;
-      this->First = Status::Error(text.substr(begin, text.find_last_not_of('\n') + 1 - begin));
-    }
-  }
-
-  Status First;
-};
-
 //------------------------------------------------------------------------------
 // Returns process 0's outcome on all processes. All have to call it.
 bool Share(bool succeeded)
@@ -279,7 +249,7 @@ Status vtkPVCompressedImageWriter::CompressPieces(const Images& pieces)
     return status;
   }
   this->Compressor->SetInputData(whole);
-  const ErrorCatcher errors(this->Compressor);
+  const FirstError errors(this->Compressor);
   this->Compressor->Update();
   this->Compressor->RemoveAllObservers();
   this->Compressor->GetExecutive()->RemoveAllObservers();
@@ -301,7 +271,7 @@ Status vtkPVCompressedImageWriter::WriteFile(vtkImageData* volume)
   {
     writer->SetInputData(volume);
     writer->SetFileName(name.c_str());
-    const ErrorCatcher errors(writer);
+    const FirstError errors(writer);
     const bool isWritten = writer->Write() != 0;
     return !errors.GetStatus() || isWritten
       ? errors.GetStatus()
