@@ -94,14 +94,6 @@ vec2 RangeOf(uint macrocell, uint local)
     vec2(macrocells[macrocell].Low, macrocells[macrocell].High), two >> (16u * (local & 1u)));
 }
 
-ivec3 MacrocellCoordinates(uint macrocell)
-{
-  uint slice = uint(volume.Macrocells.x) * uint(volume.Macrocells.y);
-  uint inSlice = macrocell % slice;
-  return ivec3(inSlice % uint(volume.Macrocells.x), inSlice / uint(volume.Macrocells.x),
-    macrocell / slice);
-}
-
 void main()
 {
   uint local = gl_LocalInvocationIndex;
@@ -120,9 +112,7 @@ void main()
     barrier();
     if (((local < 32u ? marked.x : marked.y) >> (local & 31u) & 1u) != 0u)
     {
-      ivec3 block = MACROCELL_SIDE * MacrocellCoordinates(macrocell) +
-        (ivec3(local) >> ivec3(0, MACROCELL_SIDE_LOG2, 2 * MACROCELL_SIDE_LOG2) &
-          (MACROCELL_SIDE - 1));
+      ivec3 block = MACROCELL_SIDE * MacrocellCoordinates(macrocell) + BlockInMacrocell(local);
       uvec2 marks = MarksOf(block, RangeOf(macrocell, local));
       cellMarks[BlockIndex(block)] = marks;
       if (marks != uvec2(0u))

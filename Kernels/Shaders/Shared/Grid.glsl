@@ -24,11 +24,22 @@ ivec3 MacrocellOf(ivec3 block)
   return block >> MACROCELL_SIDE_LOG2;
 }
 
+// Of element number i of a grid, x fastest.
+ivec3 CoordinatesIn(ivec3 grid, uint i)
+{
+  uint slice = uint(grid.x) * uint(grid.y);
+  uint inSlice = i % slice;
+  return ivec3(inSlice % uint(grid.x), inSlice / uint(grid.x), i / slice);
+}
+
 ivec3 BlockCoordinates(uint block)
 {
-  uint slice = uint(volume.Blocks.x) * uint(volume.Blocks.y);
-  uint inSlice = block % slice;
-  return ivec3(inSlice % uint(volume.Blocks.x), inSlice / uint(volume.Blocks.x), block / slice);
+  return CoordinatesIn(volume.Blocks, block);
+}
+
+ivec3 MacrocellCoordinates(uint macrocell)
+{
+  return CoordinatesIn(volume.Macrocells, macrocell);
 }
 
 uint BlockIndex(ivec3 b)
@@ -52,6 +63,12 @@ uint LocalIndex(ivec3 block)
 {
   uvec3 local = uvec3(block) & uint(MACROCELL_SIDE - 1);
   return local.x + uint(MACROCELL_SIDE) * (local.y + uint(MACROCELL_SIDE) * local.z);
+}
+
+// The block of that number, from the first of its macrocell.
+ivec3 BlockInMacrocell(uint local)
+{
+  return CoordinatesIn(ivec3(MACROCELL_SIDE), local);
 }
 
 // Is a cell one of a set of its block's? Bit x + 4 y + 16 z is that of the cell with this lowest

@@ -165,13 +165,6 @@ void StoreRanges(uint macrocell)
   }
 }
 
-ivec3 MacrocellCoordinates(uint macrocell)
-{
-  uint width = uint(volume.Macrocells.x);
-  uint height = uint(volume.Macrocells.y);
-  return ivec3(macrocell % width, (macrocell / width) % height, macrocell / (width * height));
-}
-
 void main()
 {
   uint stride = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
@@ -181,8 +174,7 @@ void main()
     LoadSamples(firstBlock);
     for (int i = int(gl_LocalInvocationIndex); i < BLOCKS_PER_MACROCELL; i += int(GROUP_SIZE))
     {
-      ivec3 local = ivec3(i, i / MACROCELL_SIDE, i / (MACROCELL_SIDE * MACROCELL_SIDE));
-      localRanges[i] = DualGridRange(firstBlock, local % MACROCELL_SIDE);
+      localRanges[i] = DualGridRange(firstBlock, BlockInMacrocell(uint(i)));
     }
     barrier();
     StoreRanges(macrocell);
