@@ -61,6 +61,10 @@ int CountSamples(vtkDataArray* coordinates)
       std::abs(coordinates->GetComponent(i + 1, 0) - coordinates->GetComponent(i, 0));
     shortest = step > 0.0 ? std::min(shortest, step) : shortest;
   }
+  if (!(shortest > 0.0))
+  {
+    return 1; // a flat grid
+  }
   const double wanted = std::ceil(std::abs(LengthOf(coordinates)) / shortest - Slack);
   const double most = static_cast<double>(RectilinearImage::Refinement * steps);
   return static_cast<int>(std::min(wanted, most)) + 1;
