@@ -59,6 +59,12 @@ namespace
 {
 constexpr double Unlimited = std::numeric_limits<double>::infinity(); // milliseconds
 
+// How much of what a first image takes is done before each part of it, as LoadingEvent tells.
+namespace LoadedBefore
+{
+constexpr double Upload = 0.05, Preparation = 0.1, Start = 0.5, Passes = 0.7, Next = 1.0;
+}
+
 // The failure that was told last: the same one is not told at every render.
 struct ToldFailure
 {
@@ -82,6 +88,8 @@ struct vtkProgressiveIsosurfaceMapper::Internals
   std::vector<double> JudgedIsovalues; ///< that WarnOfDoubts() has seen
   vtkMTimeType JudgedTime = 0;         ///< the input's then
   ToldFailure Told;
+  bool Loads = false;             ///< LoadingEvent has been told, and not yet its end
+  bool AsksObservers = false;     ///< of LoadingEvent
   vtkTypeInt64 TightBudget = 0;   ///< the last one that was too small, and of which
   vtkMTimeType TightTime = 0;     ///< input that has been told
   double InputMilliseconds = 0.0; ///< that the inputs took when they last changed
@@ -269,6 +277,10 @@ void vtkProgressiveIsosurfaceMapper::Render(vtkRenderer* renderer, vtkVolume* vo
 {
   const vtkSmartPointer<vtkProgressiveIsosurfaceMapper> alive = this; // whatever observers do
   const Stopwatch stopwatch;
+  if (this->Impl->AsksObservers)
+  {
+    return; // one of them renders: there is nothing to show yet
+  }
   this->Impl->Renderer = renderer;
   if (!this->CanRender(renderer, volume) || !this->UpdateInputs())
   {
@@ -299,6 +311,11 @@ void vtkProgressiveIsosurfaceMapper::Render(vtkRenderer* renderer, vtkVolume* vo
   }
   this->Statistics->SetSource(
     [this, detailed = this->DetailedStatistics]() { return this->CollectFigures(detailed); });
+  if (this->Impl->Loads && this->Impl->Pipeline.IsStarted())
+  {
+    this->TellLoading(LoadedBefore::Next);
+    this->Impl->Loads = false;
+  }
   double fraction = this->GetCompletedFraction();
   this->InvokeEvent(vtkCommand::ProgressEvent, &fraction);
   if (!window->IsCurrent())
@@ -340,6 +357,10 @@ bool vtkProgressiveIsosurfaceMapper::CanRender(vtkRenderer* renderer, vtkVolume*
 
 bool vtkProgressiveIsosurfaceMapper::UpdateInputs()
 {
+  if (this->Impl->AsksObservers)
+  {
+    return true; // what is being loaded has to stay
+  }
   if (!this->GetInputAlgorithm())
   {
     return this->Fails("has no input: connect a vtkImageData, plain or compressed");
@@ -510,6 +531,11 @@ bool vtkProgressiveIsosurfaceMapper::UpdatePipeline(bool newImage, bool mayWait)
   settings.SpeculationLimit = this->SpeculationLimit;
   settings.DecodeWholeVolume = this->DecodeWholeVolume;
   settings.Detailed = this->DetailedStatistics;
+  const bool empty = IsEmpty(impl.View.GetScene().View);
+  if (!empty && !impl.Pipeline.IsVolumeLoaded() && !this->TellLoading(LoadedBefore::Upload))
+  {
+    return false;
+  }
   const Status made = impl.Pipeline.SetScene(impl.View.GetScene(), settings, newImage);
   if (!made)
   {
@@ -517,23 +543,59 @@ bool vtkProgressiveIsosurfaceMapper::UpdatePipeline(bool newImage, bool mayWait)
     return impl.Pipeline.GetStatus() ? this->Succeeds(made) : this->Continues(made);
   }
   this->WarnOfTightBudget();
-  const bool empty = IsEmpty(impl.View.GetScene().View);
-  if (!impl.Pipeline.IsStarted() &&
-    (!mayWait || empty || impl.Pipeline.AwaitPrograms(1e3 * this->TimeAllowance)))
+  const bool starts = !impl.Pipeline.IsStarted() &&
+    (!mayWait || empty || impl.Pipeline.AwaitPrograms(1e3 * this->TimeAllowance));
+  return !starts || this->StartImage(empty);
+}
+
+// Prepares the volume, if the image is not empty and nothing has done so, and starts the image.
+bool vtkProgressiveIsosurfaceMapper::StartImage(bool empty)
+{
+  using namespace LoadedBefore;
+  Internals& impl = *this->Impl;
+  const bool loads = !empty && impl.Pipeline.IsLoading();
+  if (!empty)
   {
-    if (!empty)
+    const vtkTimerLogScope timed("Progressive Isosurface: upload");
+    const vtkOpenGLRenderWindow* const window = impl.Window.Get();
+    const auto tell = [&](double prepared)
+    { return this->TellLoading(Preparation + (Start - Preparation) * prepared); };
+    if (loads && !tell(0.0))
     {
-      const vtkTimerLogScope timed("Progressive Isosurface: upload");
-      if (!this->Continues(impl.Pipeline.PrepareVolume()))
-      {
-        return false;
-      }
+      return false;
     }
-    const Stopwatch stopwatch;
-    impl.Pipeline.Start();
-    impl.TotalMilliseconds = stopwatch.GetMilliseconds();
+    const Status& prepared = impl.Pipeline.PrepareVolume(tell);
+    if (impl.Window.Get() != window || !this->Continues(prepared))
+    {
+      return false;
+    }
   }
-  return true;
+  const Stopwatch stopwatch;
+  impl.Pipeline.Start();
+  impl.TotalMilliseconds = stopwatch.GetMilliseconds();
+  return !loads || this->TellLoading(Passes);
+}
+
+// Tells how far the loading is. Observers may do anything: returns false if they have released what
+// is to be drawn. Afterwards all is bound as it was: Qt binds the framebuffers of its widgets.
+bool vtkProgressiveIsosurfaceMapper::TellLoading(double fraction)
+{
+  Internals& impl = *this->Impl;
+  impl.Loads = true;
+  if (!this->HasObserver(LoadingEvent))
+  {
+    return true;
+  }
+  const vtkSmartPointer<vtkOpenGLRenderWindow> window = impl.Window.Get();
+  window->GetState()->PushFramebufferBindings();
+  impl.AsksObservers = true;
+  this->InvokeEvent(LoadingEvent, &fraction);
+  impl.AsksObservers = false;
+  window->MakeCurrent();
+  window->GetState()->ResetFramebufferBindings();
+  window->GetState()->PopFramebufferBindings();
+  window->GetShaderCache()->ReleaseCurrentShader();
+  return impl.Window.Get() == window;
 }
 
 // Performs passes, as many as there is time for, and draws the image as far as it has come.

@@ -40,7 +40,10 @@
  * plain vtkVolume works too, but is drawn after translucent geometry.
  *
  * Events: vtkCommand::ProgressEvent after every Render() with a double*, the completed fraction;
- * CompressionEvent while plain input is compressed, likewise with the fraction that is.
+ * CompressionEvent while plain input is compressed, likewise with the fraction that is; and
+ * LoadingEvent with the fraction that is done of what only a first image takes (the upload and
+ * preparation of the volume, and programs that have not run yet): before each part of it, and with
+ * 1.0 after it. An observer's own renders draw nothing of the mapper meanwhile.
  *
  * @sa vtkIsosurfaceVolume vtkProgressiveIsosurfaceStatistics vtkImageZFPCompress
  */
@@ -78,7 +81,8 @@ public:
   /// Events beside VTK's.
   enum Events
   {
-    CompressionEvent = vtkCommand::UserEvent + 4301
+    CompressionEvent = vtkCommand::UserEvent + 4301,
+    LoadingEvent
   };
 
   ///@{
@@ -424,6 +428,8 @@ private:
   bool BindWindow(vtkOpenGLRenderWindow* window);
   bool UpdateScene(vtkRenderer* renderer, vtkVolume* volume);
   bool UpdatePipeline(bool newImage, bool mayWait);
+  bool StartImage(bool empty);
+  bool TellLoading(double fraction);
   bool Refine(vtkOpenGLRenderWindow* window);
   void PrepareNextRender(vtkOpenGLRenderWindow* window);
   bool MayRefineLater(vtkOpenGLRenderWindow* window);

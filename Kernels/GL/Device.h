@@ -71,6 +71,8 @@ public:
   ///@{ The programs of the chosen variants.
   bool IsReady(Stage stage);
   bool IsReady(Urgency urgency);
+  /// Has somebody waited for a stage's?
+  bool HasCompiled(Stage stage) const { return this->Programs->HasGiven(stage, this->Needs); }
   /// Compiles a stage's, and waits for it.
   const Status& Compile(Stage stage);
   /// Compiles the next one, and waits for it. Returns whether there was one left.

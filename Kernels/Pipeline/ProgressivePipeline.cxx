@@ -144,8 +144,32 @@ Status ProgressivePipeline::UploadVolume()
   return status;
 }
 
+// How far a volume's preparation is: it goes through all blocks once or more often.
+struct ProgressivePipeline::Preparation
+{
+  const std::function<bool(double)>& GoesOn;
+  double Rounds = 1.0;
+  double Whole = 1.0; ///< items of the present round
+  double Done = 0.0;  ///< rounds
+
+  bool Add(std::int64_t items)
+  {
+    this->Done += static_cast<double>(items) / this->Whole;
+    return this->GoesOn(std::min(this->Done / this->Rounds, 1.0));
+  }
+};
+
+bool ProgressivePipeline::IsLoading() const
+{
+  const std::set<Stage> stages = StagesOf(Moment::Pass, this->Needs);
+  return !this->VolumeLoaded || !this->VolumePrepared ||
+    std::any_of(stages.begin(), stages.end(),
+      [this](Stage stage)
+      { return InfoOf(stage).Compiled == Urgency::AtOnce && !this->Gpu->HasCompiled(stage); });
+}
+
 // Where the whole volume is decoded the streams go again.
-const Status& ProgressivePipeline::PrepareVolume()
+const Status& ProgressivePipeline::PrepareVolume(const std::function<bool(double)>& goesOn)
 {
   if (this->VolumePrepared)
   {
@@ -158,24 +182,23 @@ const Status& ProgressivePipeline::PrepareVolume()
       return this->GetStatus();
     }
   }
+  Preparation preparation = { goesOn };
   this->Gpu->Timer.BeginPreparation();
-  if (this->Needs.Cached)
+  const bool wentOn = this->Needs.Cached
+    ? this->FindRangesByBoxes(preparation)
+    : this->DecodeWholeVolume(preparation) && this->FindRangesOfDecoded(preparation);
+  if (wentOn)
   {
-    this->FindRangesByBoxes();
+    this->Gpu->Timer.EndPreparation();
+    this->VolumePrepared = this->GetStatus().IsOk();
   }
-  else
-  {
-    this->DecodeWholeVolume();
-    this->FindRangesOfDecoded();
-  }
-  this->Gpu->Timer.EndPreparation();
-  this->VolumePrepared = this->GetStatus().IsOk();
   return this->GetStatus();
 }
 
-// Does work on a volume's macrocells or blocks by slices, of which none takes the GPU long.
-void ProgressivePipeline::RunSlices(const VolumeSlice& all, SliceSize& size,
-  const std::function<VolumeSlice(const VolumeSlice&)>& run)
+// Does work on a volume's macrocells or blocks by slices, of which none takes the GPU long. Returns
+// false if everything has been released meanwhile.
+bool ProgressivePipeline::RunSlices(const VolumeSlice& all, Preparation& preparation,
+  SliceSize& size, const std::function<VolumeSlice(const VolumeSlice&)>& run)
 {
   for (VolumeSlice rest = all; rest.First < rest.End && this->GetStatus();)
   {
@@ -184,12 +207,20 @@ void ProgressivePipeline::RunSlices(const VolumeSlice& all, SliceSize& size,
     Device::Finish();
     size.Record(done.GetItems(), stopwatch.GetMilliseconds());
     rest.First = done.End;
+    if (!preparation.Add(done.GetItems()))
+    {
+      return false;
+    }
   }
+  return true;
 }
 
 // Decodes all blocks, an invocation each, then frees the streams.
-void ProgressivePipeline::DecodeWholeVolume()
+bool ProgressivePipeline::DecodeWholeVolume(Preparation& preparation)
 {
+  preparation.Rounds =
+    InfoOf(Stage::DecodeColors).IsNeeded(Moment::Volume, this->Needs) ? 3.0 : 2.0;
+  preparation.Whole = static_cast<double>(this->Needs.Blocks);
   for (const Stage stage : { Stage::DecodeBlocks, Stage::DecodeColors })
   {
     if (!InfoOf(stage).IsNeeded(Moment::Volume, this->Needs))
@@ -200,23 +231,28 @@ void ProgressivePipeline::DecodeWholeVolume()
     for (const BoundSegment& segment : this->Streams.GetSegments(stage))
     {
       const std::int64_t first = segment.Place.FirstBlock;
-      this->RunSlices({ first, first + segment.Place.Blocks }, size,
-        [&](const VolumeSlice& rest)
-        {
-          const VolumeSlice slice = { rest.First, std::min(rest.First + size.Get(), rest.End) };
-          this->Gpu->DispatchSlice(stage, GroupsFor(stage, slice.GetItems()), slice, {}, &segment);
-          return slice;
-        });
+      const auto decode = [&](const VolumeSlice& rest)
+      {
+        const VolumeSlice slice = { rest.First, std::min(rest.First + size.Get(), rest.End) };
+        this->Gpu->DispatchSlice(stage, GroupsFor(stage, slice.GetItems()), slice, {}, &segment);
+        return slice;
+      };
+      if (!this->RunSlices({ first, first + segment.Place.Blocks }, preparation, size, decode))
+      {
+        return false;
+      }
     }
   }
   this->Streams.Free();
+  return true;
 }
 
-void ProgressivePipeline::FindRangesOfDecoded()
+bool ProgressivePipeline::FindRangesOfDecoded(Preparation& preparation)
 {
+  preparation.Whole = static_cast<double>(this->Needs.Macrocells);
   SliceSize size(FirstSlice);
   const glsl::BlockBox whole = WholeBox(this->Size).Blocks;
-  this->RunSlices({ 0, this->Needs.Macrocells }, size,
+  return this->RunSlices({ 0, this->Needs.Macrocells }, preparation, size,
     [&](const VolumeSlice& rest)
     {
       const VolumeSlice slice = { rest.First, std::min(rest.First + size.Get(), rest.End) };
@@ -227,20 +263,25 @@ void ProgressivePipeline::FindRangesOfDecoded()
 
 // Decodes boxes of blocks, one after the other, into the cache, which is empty yet: its first slots
 // have them until their macrocells' ranges are found. So one program decodes for ranges and rays.
-void ProgressivePipeline::FindRangesByBoxes()
+bool ProgressivePipeline::FindRangesByBoxes(Preparation& preparation)
 {
+  preparation.Whole = static_cast<double>(this->Needs.Macrocells);
   SliceSize size(FirstSlice);
   for (const BoundSegment& segment : this->Streams.GetSegments(Stage::DecodeBlocks))
   {
-    this->RunSlices(segment.Macrocells, size,
-      [&](const VolumeSlice& rest)
-      {
-        const std::int64_t items = MacrocellsAtATime(this->Size, rest, size.Get());
-        const VolumeSlice slice = { rest.First, rest.First + items };
-        this->FindRangesOf(slice, segment);
-        return slice;
-      });
+    const auto find = [&](const VolumeSlice& rest)
+    {
+      const std::int64_t items = MacrocellsAtATime(this->Size, rest, size.Get());
+      const VolumeSlice slice = { rest.First, rest.First + items };
+      this->FindRangesOf(slice, segment);
+      return slice;
+    };
+    if (!this->RunSlices(segment.Macrocells, preparation, size, find))
+    {
+      return false;
+    }
   }
+  return true;
 }
 
 void ProgressivePipeline::FindRangesOf(const VolumeSlice& macrocells, const BoundSegment& segment)
@@ -264,7 +305,7 @@ Status ProgressivePipeline::DecodeVolume(std::vector<float>& values)
   {
     return loaded;
   }
-  if (!this->PrepareVolume())
+  if (!this->PrepareVolume([](double) { return true; }))
   {
     return this->GetStatus();
   }

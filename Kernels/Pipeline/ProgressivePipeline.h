@@ -63,9 +63,14 @@ public:
   /// Returns false if some are not. A software renderer compiles when a stage first runs: it does
   /// not wait.
   bool AwaitPrograms(double milliseconds);
+  /// Has the volume been uploaded? It has for the scene after it, unless that wants it otherwise.
+  bool IsVolumeLoaded() const { return this->VolumeLoaded; }
+  /// Is the volume still to be uploaded or prepared, or does a program lack that every pass runs?
+  bool IsLoading() const;
   /// Prepares the volume once it is loaded: decodes it if it is to be decoded whole, and finds the
-  /// values' range in each block. Waits for the programs.
-  const Status& PrepareVolume();
+  /// values' range in each block. Waits for the programs. `goesOn` gets the fraction that is done,
+  /// from time to time; false: everything has been released meanwhile.
+  const Status& PrepareVolume(const std::function<bool(double)>& goesOn);
   /// Starts an image of the prepared volume.
   void Start();
   /// Is an image under way, or complete, that the scene lets go on?
@@ -127,11 +132,12 @@ private:
   void FreeForPlan(bool reload);
   Status LoadVolume();
   Status UploadVolume();
-  void RunSlices(const VolumeSlice& all, SliceSize& size,
+  struct Preparation;
+  bool RunSlices(const VolumeSlice& all, Preparation& preparation, SliceSize& size,
     const std::function<VolumeSlice(const VolumeSlice&)>& run);
-  void DecodeWholeVolume();
-  void FindRangesOfDecoded();
-  void FindRangesByBoxes();
+  bool DecodeWholeVolume(Preparation& preparation);
+  bool FindRangesOfDecoded(Preparation& preparation);
+  bool FindRangesByBoxes(Preparation& preparation);
   void FindRangesOf(const VolumeSlice& macrocells, const BoundSegment& segment);
   Status MakeCache(bool newImage);
   void RemakeCache(std::int64_t slots);

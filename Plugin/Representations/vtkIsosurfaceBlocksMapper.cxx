@@ -208,8 +208,11 @@ void vtkIsosurfaceBlocksMapper::UpdateMappers(vtkVolumeProperty* property)
       {
         this->All[i]->AddObserver(event, this, &vtkIsosurfaceBlocksMapper::Keep);
       }
-      this->All[i]->AddObserver(vtkProgressiveIsosurfaceMapper::CompressionEvent, this,
-        &vtkIsosurfaceBlocksMapper::OnCompression);
+      for (const unsigned long event : { vtkProgressiveIsosurfaceMapper::CompressionEvent,
+             vtkProgressiveIsosurfaceMapper::LoadingEvent })
+      {
+        this->All[i]->AddObserver(event, this, &vtkIsosurfaceBlocksMapper::OnProgress);
+      }
     }
     if (this->All[i]->GetInput() != images[i])
     {
@@ -285,9 +288,13 @@ void vtkIsosurfaceBlocksMapper::Keep(vtkObject*, unsigned long event, void* text
 }
 
 //------------------------------------------------------------------------------
-void vtkIsosurfaceBlocksMapper::OnCompression(vtkObject*, unsigned long event, void* fraction)
+void vtkIsosurfaceBlocksMapper::OnProgress(vtkObject* mapper, unsigned long event, void* fraction)
 {
-  this->InvokeEvent(event, fraction);
+  const auto block = std::find(this->Drawn.begin(), this->Drawn.end(), mapper);
+  const auto before = static_cast<double>(block - this->Drawn.begin());
+  const auto blocks = static_cast<double>(std::max<std::size_t>(this->Drawn.size(), 1));
+  double ofAll = std::min((before + *static_cast<double*>(fraction)) / blocks, 1.0);
+  this->InvokeEvent(event, &ofAll);
 }
 
 //------------------------------------------------------------------------------

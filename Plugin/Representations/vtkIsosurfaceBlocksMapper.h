@@ -80,8 +80,8 @@ private:
   /// Called for an error or a warning of a block's mapper, with VTK's text of it.
   void Keep(vtkObject* mapper, unsigned long event, void* text);
   void CountComplete() { ++this->NumberOfComplete; }
-  /// Hands on the event, with the fraction of a block that is compressed.
-  void OnCompression(vtkObject* mapper, unsigned long event, void* fraction);
+  /// Hands on the event of a block that is compressed or loaded, with the fraction of all blocks.
+  void OnProgress(vtkObject* mapper, unsigned long event, void* fraction);
 
   vtkNew<vtkProgressiveIsosurfaceMapper> Settings;
   Mappers All;   ///< one for each block

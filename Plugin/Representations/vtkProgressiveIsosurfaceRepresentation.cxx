@@ -60,8 +60,12 @@ vtkProgressiveIsosurfaceRepresentation::vtkProgressiveIsosurfaceRepresentation()
 {
   auto mapper = vtkSmartPointer<vtkIsosurfaceBlocksMapper>::New();
   mapper->GetSettings()->LitLikeMeshesOn(); // looks like the surface of ParaView's Contour
-  mapper->AddObserver(vtkProgressiveIsosurfaceMapper::CompressionEvent, this,
-    &vtkProgressiveIsosurfaceRepresentation::ShowProgress);
+  for (const unsigned long event : { vtkProgressiveIsosurfaceMapper::CompressionEvent,
+         vtkProgressiveIsosurfaceMapper::LoadingEvent })
+  {
+    mapper->AddObserver(event, this, &vtkProgressiveIsosurfaceRepresentation::ShowProgress);
+  }
+  this->SetProgressText("Progressive Isosurface"); // while ParaView updates it
   this->VolumeMapper = mapper;
   vtkMath::UninitializeBounds(this->WholeBounds);
   this->Actor = vtkSmartPointer<vtkPVIsosurfaceLODVolume>::New();
@@ -122,9 +126,12 @@ int vtkProgressiveIsosurfaceRepresentation::ProcessViewRequest(
 }
 
 //------------------------------------------------------------------------------
-void vtkProgressiveIsosurfaceRepresentation::ShowProgress(vtkObject*, unsigned long, void* fraction)
+void vtkProgressiveIsosurfaceRepresentation::ShowProgress(
+  vtkObject*, unsigned long event, void* fraction)
 {
-  this->SetProgressText("Compressing for Progressive Isosurface");
+  const bool compresses = event == vtkProgressiveIsosurfaceMapper::CompressionEvent;
+  this->SetProgressText(
+    compresses ? "Compressing for Progressive Isosurface" : "Loading Progressive Isosurface");
   this->UpdateProgress(*static_cast<double*>(fraction));
 }
 

@@ -191,7 +191,7 @@ private:
 
   void UpdateCropping();
 
-  /// Tells ParaView how much of a plain image is compressed, which takes a while for large ones.
+  /// Tells ParaView how much of a plain image is compressed, and of what a first image takes done.
   void ShowProgress(vtkObject* caller, unsigned long event, void* fraction);
 
   /// Finds the side of the squares of pixels that share a ray while the camera moves: as wanted, up

@@ -5,13 +5,18 @@ import time
 
 import numpy as np
 import pytest
+from vtkmodules.util.misc import calldata_type
+from vtkmodules.util.vtkConstants import VTK_DOUBLE
 from vtkmodules.vtkCommonCore import reference
 
+import progiso
 from helpers.comparison import OPAQUE, ComparisonScene, paint, show
 from helpers.gl_hooks import gl_errors
 from helpers.images import blobs, make_image
 from helpers.messages import vtk_messages
 from helpers.scenes import CACHED
+
+LOADING = progiso.vtkProgressiveIsosurfaceMapper.LoadingEvent
 
 
 class Trouble(Exception):
@@ -100,6 +105,63 @@ DEEDS = {
     "takes the mapper away": lambda scene, image: scene.volumes[0].SetMapper(None),
     "takes the input away": lambda scene, image: scene.mapper.RemoveAllInputs(),
 }
+
+
+@pytest.mark.parametrize("deed", DEEDS)
+def test_an_observer_does_anything_while_a_volume_loads(drawn, image, deed):
+    """Before the upload, the preparation, and the passes, and in between: as above."""
+    scene, expected = drawn
+    mapper, volume, size = scene.mapper, scene.volumes[0], scene.window.GetSize()
+    for part in range(4):
+        mapper.ReleaseGraphicsResources(scene.window)
+        told = []
+
+        def act(*_, part=part, told=told):
+            told.append(True)
+            if len(told) == part + 1:
+                DEEDS[deed](scene, image)
+
+        observer = mapper.AddObserver(LOADING, act)
+        with vtk_messages():
+            scene.window.Render()
+        assert len(told) > part
+        mapper.RemoveObserver(observer)
+        volume.SetMapper(mapper)
+        mapper.SetInputData(image)
+        mapper.SetMemoryBudget(0)
+        paint(volume, OPAQUE)
+        scene.window.SetSize(*size)
+        scene.render()
+        if "OS" not in scene.window.GetClassName() or "mapper in another" not in deed:
+            assert np.array_equal(scene.picture(), expected)
+
+
+def test_loading_is_told(image):
+    """Before its parts and at their end: of a volume, and again only of programs that are new."""
+    scene = ComparisonScene(ours=True)
+    volume = show(scene, image, OPAQUE)
+    told = []
+
+    @calldata_type(VTK_DOUBLE)
+    def note(_caller, _event, fraction):
+        told.append(fraction)
+
+    scene.mapper.AddObserver(LOADING, note)
+    scene.render()
+    assert len(told) >= 5 and told == sorted(set(told)) and told[0] < 0.1 and told[-1] == 1.0
+    told.clear()
+    paint(volume, {0.3: (1, 0, 0, 1)})
+    scene.camera.Azimuth(20)
+    scene.render()
+    assert not told
+    paint(volume, {0.3: (1, 0, 0, 0.5)})  # translucent surfaces have programs of their own
+    scene.render()
+    assert len(told) >= 2 and told == sorted(told) and told[-1] == 1.0
+    told.clear()
+    scene.mapper.SetInputData(progiso.compress(make_image(blobs((20, 20, 20), 3)), rate=8))
+    scene.render()
+    assert len(told) >= 4 and told == sorted(told) and told[-1] == 1.0
+    assert not gl_errors()
 
 
 @pytest.mark.parametrize("event", ["ProgressEvent", "AbortCheckEvent", "StartEvent"])
