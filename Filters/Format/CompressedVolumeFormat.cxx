@@ -5,7 +5,6 @@
 #include "Codec/MacrocellErrors.h"
 #include "Format/Checksums.h"
 #include "Format/FieldArrays.h"
-#include "Format/LevelFormat.h"
 #include "Format/SampleGrid.h"
 #include "Format/StreamArray.h"
 #include "Pieces/HidingFlags.h"
@@ -567,7 +566,7 @@ Status CompressedVolumeFormat::Read(vtkImageData* image, vtkCompressedVolume* vo
                                : "there is no image");
   }
   for (const auto& read : { ReadNumbers, ReadGeometry, ReadArrayName, ReadStream, ReadUnits,
-         ReadErrors, ReadHidden, CheckMetadata, CheckStream, LevelFormat::Read })
+         ReadErrors, ReadHidden, CheckMetadata, CheckStream })
   {
     if (Status status = read(image, volume); !status)
     {
@@ -614,8 +613,6 @@ void CompressedVolumeFormat::Write(vtkCompressedVolume* volume, vtkImageData* im
   volume->GetStream()->SetName(StreamName);
   fields->AddArray(volume->GetStream());
   StoreChecksums(volume, fields); // last: of what is there then
-  LevelFormat::Write(volume,
-    vtkArrayDownCast<vtkTypeUInt32Array>(fields->GetAbstractArray(PageChecksumsName)), fields);
 }
 
 //------------------------------------------------------------------------------
@@ -655,10 +652,13 @@ Status CompressedVolumeFormat::Place(vtkImageData* image)
 void CompressedVolumeFormat::SpeedUpRanges(vtkDataObject* object)
 {
   vtkFieldData* const fields = HasStream(object) ? object->GetFieldData() : nullptr;
-  if (fields)
+  auto* const usual =
+    vtkArrayDownCast<vtkUnsignedCharArray>(fields ? fields->GetAbstractArray(StreamName) : nullptr);
+  if (usual && !dynamic_cast<StreamArray*>(usual))
   {
-    StreamArray::Replace(fields, StreamName);
-    LevelFormat::SpeedUpRanges(fields);
+    vtkNew<StreamArray> stream;
+    stream->ShallowCopy(usual);
+    fields->AddArray(stream);
   }
 }
 
@@ -669,5 +669,4 @@ void CompressedVolumeFormat::Remove(vtkDataObject* object)
   {
     object->GetFieldData()->RemoveArray(name);
   }
-  LevelFormat::Remove(object->GetFieldData());
 }

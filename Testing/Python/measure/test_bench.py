@@ -38,7 +38,6 @@ KINDS = {
     "peers": {"peers"},
     "errors": {"errors"},
     "rates": {"rates"},
-    "levels": {"level_spheres", "levels"},
     "budget": {"budget"},
     "interactive": {"interactive"},
     "first-image": {"first_image"},

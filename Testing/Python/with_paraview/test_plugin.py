@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 
@@ -97,4 +98,28 @@ def test_panel_in_the_window(build, tmp_path):
 
     assert found["cropped"] == found["clipped"] == found["second"] == 1
     for name in ("simple", "slider", "cropping", "plane", "advanced", "plain"):
+        assert (tmp_path / f"gui_{name}.png").stat().st_size > 50_000
+
+
+def test_scene_in_the_window(build, tmp_path):
+    """Choosing the representation shows a bar, hovering finds cells and points, blocks show."""
+    found = run_window("gui_scene.py", build, tmp_path)
+    texts, fractions = zip(*found["choosing"], strict=True)
+    assert any("Compressing" in text for text in texts), texts
+    loading = [part for text, part in found["choosing"] if text.startswith("Loading")]
+    assert len(loading) >= 3 and loading == sorted(loading) and fractions[-1] == 100, loading
+    assert found["isovalue"] == [], found["isovalue"]
+
+    assert found["chosen"] == found["blocks"] == "Progressive Isosurface"
+    cell, point = re.search(r"Id: (\d+)", found["cell"]), re.search(r"Id: (\d+)", found["point"])
+    assert cell and found["clicked"][-1] == int(cell[1]), (found["cell"], found["clicked"])
+    corners = [
+        int(cell[1]) % 40 + i + 41 * (int(cell[1]) // 40 % 40 + j + 41 * (int(cell[1]) // 1600 + k))
+        for k in (0, 1)
+        for j in (0, 1)
+        for i in (0, 1)
+    ]
+    assert point and int(point[1]) in corners, (found["cell"], found["point"])
+    assert found["summary"].startswith("100 % complete"), found["summary"]
+    for name in ("loading", "blocks"):
         assert (tmp_path / f"gui_{name}.png").stat().st_size > 50_000

@@ -52,7 +52,7 @@ from PIL import ImageGrab
 ImageGrab.grab(xdisplay=sys.argv[1]).save(sys.argv[2])
 ' "$display" "$1"
 }
-export PROGISO_GUI_BUILD=$build PROGISO_GUI_OUTPUT=$output
+export PROGISO_GUI_BUILD=$build PROGISO_GUI_OUTPUT=$output PYTHONPATH=$here
 paraview --script="$script" >"$output/gui.log" 2>&1 &
 window=$!
 for _ in $(seq "$patience"); do
