@@ -96,6 +96,9 @@ void vtkCompressedVolume::Clear()
   this->MacrocellErrors = nullptr;
   this->Stream = nullptr;
   this->HasChecksums = false;
+  std::fill_n(this->Steps, 3, 1);
+  this->LargestDistance = -1.0;
+  this->Levels.clear();
   this->Modified();
 }
 
@@ -185,6 +188,7 @@ void vtkCompressedVolume::Crop(const int own[6])
   this->HiddenSamples = this->HiddenSamples.Crop(first, count, blocks);
   this->HiddenCells = this->HiddenCells.Crop(first, count, blocks);
   this->CropErrors(first, count);
+  this->Levels.clear();
   this->SetStream(stream);
   this->SetDimensions(dims);
   this->SetExtent(kept);
@@ -379,6 +383,25 @@ void vtkCompressedVolume::SetStream(vtkUnsignedCharArray* stream)
 }
 
 //------------------------------------------------------------------------------
+vtkCompressedVolume* vtkCompressedVolume::GetLevel(int level) const
+{
+  return level >= 1 && level <= this->GetNumberOfLevels() ? this->Levels[level - 1] : nullptr;
+}
+
+//------------------------------------------------------------------------------
+void vtkCompressedVolume::AddLevel(vtkCompressedVolume* volume)
+{
+  volume->SetOffset(this->Offset);
+  volume->SetScale(this->Scale);
+  volume->SetScalarType(this->ScalarType);
+  volume->SetArrayName(this->ArrayName);
+  volume->SetComponent(this->Component);
+  volume->SetAssociation(this->Association);
+  this->Levels.push_back(volume);
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
 bool vtkCompressedVolume::FindDecodedRange(double range[2]) const
 {
   const auto stream = BlockStream::Align(this->Stream);
@@ -420,5 +443,9 @@ void vtkCompressedVolume::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Stream: ";
   this->Stream ? os << this->Stream->GetNumberOfValues() << " bytes\n" : os << "(none)\n";
   os << indent << "HasChecksums: " << (this->HasChecksums ? "yes\n" : "no\n");
+  os << indent << "Levels: " << this->GetNumberOfLevels() << "\n";
+  os << indent << "Steps: " << this->Steps[0] << " " << this->Steps[1] << " " << this->Steps[2]
+     << "\n";
+  os << indent << "LargestDistance: " << this->LargestDistance << "\n";
   os << indent << "ErrorMessage: " << this->ErrorMessage << "\n";
 }

@@ -35,6 +35,21 @@
  *   ProgIso.ZFP.* but this and the stream, by the bytes of their names: name, 0, number of values
  *   as text, 0, values as 64-bit integers or doubles (little-endian), or texts with 0
  *
+ * Levels of detail, coarser copies of the volume, lie in arrays of their own, which readers may
+ * leave alone. Level 1 is made of the volume, level 2 of level 1, and so on; each has every second
+ * sample along some axes (HalvingFilter.h: sample j lies on sample 2j of the level before), its
+ * own stream of its own rate, and the units of the volume's.
+ *
+ * - ProgIso.Levels (2 64-bit integers): their number, and the CRC-32 of the volume's PageChecksums,
+ *   so that levels of another stream are found out
+ * - ProgIso.Level<k>.Stream, .BlockBits, .Dimensions, .Range, .Error, .HiddenSamples, .HiddenCells,
+ *   .PageChecksums: as above, of the level's own samples before encoding; hidden cells are those
+ *   between samples, of cell data, too
+ * - ProgIso.Level<k>.Steps (3 integers): samples of the volume from one of the level to the next
+ * - ProgIso.Level<k>.Distance (double): the interpolant of the level is nowhere farther from a
+ *   visible sample of the original array, where none of its own levels' hide something
+ * - ProgIso.Level<k>.Checksum: as MetadataChecksum, of the arrays named ProgIso.Level<k>.*
+ *
  * What the image's own ghost arrays (vtkGhostType) hide is hidden, too: filters may have blanked
  * it.
  *
@@ -71,6 +86,7 @@
 #include "vtkSmartPointer.h"         // for the stream
 
 #include <string> // for the array name and error messages
+#include <vector> // for the levels
 
 class vtkDataObject;
 class vtkDoubleArray;
@@ -92,6 +108,7 @@ public:
     MinimumBlockBits = 9,    ///< 1 bit "not empty" and 8 bits exponent
     MaximumBlockBits = 2048, ///< 32 bits per sample
     PageBytes = 65536,       ///< bytes of the stream with one checksum
+    MaximumLevels = 11,      ///< of detail, beside the volume itself
   };
 
   enum
@@ -166,7 +183,7 @@ public:
 
   /**
    * Reduces the stream to the blocks of GetCoveringExtent() for a part of the volume, without
-   * encoding them again. `own` lies within GetExtent().
+   * encoding them again. `own` lies within GetExtent(). Levels of detail are left out then.
    */
   void Crop(const int own[6]);
 
@@ -343,6 +360,30 @@ public:
 
   ///@{
   /**
+   * Levels of detail from 1 on, each a volume of its own: with dimensions, stream, bits, units,
+   * range, errors and masks, of which that of cells is of those between samples. Null if there is
+   * no such level. AddLevel() gives the next one the units and the array's name and type of this
+   * volume.
+   */
+  int GetNumberOfLevels() const { return static_cast<int>(this->Levels.size()); }
+  vtkCompressedVolume* GetLevel(int level) const;
+  void AddLevel(vtkCompressedVolume* volume);
+  ///@}
+
+  ///@{
+  /**
+   * Of a level: samples of the volume from one of its samples to the next, along each axis, powers
+   * of 2; and a bound on how far its interpolant is off the samples of the original array, in their
+   * own units, where neither it nor a level before hides anything, -1 if it is not known.
+   */
+  vtkGetVector3Macro(Steps, int);
+  vtkSetVector3Macro(Steps, int);
+  vtkGetMacro(LargestDistance, double);
+  vtkSetMacro(LargestDistance, double);
+  ///@}
+
+  ///@{
+  /**
    * Whether what Read() has read has checksums, with which it agrees; files of versions before 3
    * have none. Write() always stores them.
    */
@@ -379,6 +420,9 @@ private:
   vtkSmartPointer<vtkFloatArray> MacrocellErrors;
   vtkSmartPointer<vtkUnsignedCharArray> Stream;
   bool HasChecksums = false;
+  int Steps[3] = { 1, 1, 1 };
+  double LargestDistance = -1.0;
+  std::vector<vtkSmartPointer<vtkCompressedVolume>> Levels;
   std::string ErrorMessage;
 };
 

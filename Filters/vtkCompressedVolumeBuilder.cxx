@@ -6,6 +6,7 @@
 #include "Codec/BlockGeometry.h"
 #include "Codec/BlockStream.h"
 #include "Codec/Magnitude.h"
+#include "Codec/Pyramid.h"
 #include "Codec/SampleEncoder.h"
 #include "Format/StreamArray.h"
 #include "Status.h"
@@ -47,7 +48,8 @@ struct vtkCompressedVolumeBuilder::Work
   int BlockBits;
   vtkNew<StreamArray> Stream;
   SampleEncoder Encoder;
-  int Slices = 0; // encoded so far
+  std::unique_ptr<Pyramid> Levels; // null without levels
+  int Slices = 0;                  // encoded so far
   int ScalarType = VTK_VOID;
   int Component = 0;
   std::string ArrayName;
@@ -113,6 +115,12 @@ Status vtkCompressedVolumeBuilder::Work::AddSlab(const ChosenSamples& samples, i
   {
     return Status::Error(
       "Slices ", this->Slices, " to ", end - 1, " have ", summary.CheckValues().GetMessage());
+  }
+  if (this->Levels)
+  {
+    this->Levels->Units = this->Encoder.Units;
+    this->Levels->Hidden = this->Encoder.Hidden;
+    this->Levels->AddSlices(array, samples.Component, [](double) { return true; });
   }
   this->Slices = end;
   return {};
@@ -182,6 +190,11 @@ bool vtkCompressedVolumeBuilder::Start(const int dims[3], double rate)
   this->Volume = std::make_unique<Work>(dims, blockBits);
   const vtkTypeInt64 bytes = vtkCompressedVolume::StreamBytesFor(dims, blockBits);
   status = AllocateArray(this->Volume->Stream.Get(), bytes, "the stream", dims);
+  if (status && this->Levels > 0)
+  {
+    this->Volume->Levels = std::make_unique<Pyramid>(dims, this->NumberOfThreads);
+    status = this->Volume->Levels->Start(this->Spacing, this->Levels, blockBits);
+  }
   if (!status)
   {
     return this->SetError("There is " + status.GetMessage() + ".");
@@ -259,6 +272,13 @@ bool vtkCompressedVolumeBuilder::Finish(vtkImageData* image)
   volume->SetArrayName(name.empty() ? "scalars" : name);
   volume->SetComponent(work->Component);
   volume->SetStream(work->Stream);
+  if (work->Levels)
+  {
+    for (const auto& level : work->Levels->Finish())
+    {
+      volume->AddLevel(level);
+    }
+  }
   volume->Write(image);
   this->ErrorMessage.clear();
   return true;
@@ -272,6 +292,9 @@ void vtkCompressedVolumeBuilder::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaskNonFinite: " << (this->MaskNonFinite ? "on\n" : "off\n");
   os << indent << "Offset: " << this->Offset << "\n";
   os << indent << "Scale: " << this->Scale << "\n";
+  os << indent << "Levels: " << this->Levels << "\n";
+  os << indent << "Spacing: " << this->Spacing[0] << " " << this->Spacing[1] << " "
+     << this->Spacing[2] << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "NumberOfSlices: " << this->GetNumberOfSlices() << "\n";
   os << indent << "ErrorMessage: " << this->ErrorMessage << "\n";

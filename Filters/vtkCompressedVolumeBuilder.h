@@ -71,6 +71,18 @@ public:
 
   ///@{
   /**
+   * Most levels of detail, and the distances of samples, by which they halve axes: those that the
+   * image of Finish() has. See vtkImageZFPCompress::SetLevels(). Default 0, and 1, 1, 1. Used by
+   * Start().
+   */
+  vtkSetClampMacro(Levels, int, 0, 11);
+  vtkGetMacro(Levels, int);
+  vtkSetVector3Macro(Spacing, double);
+  vtkGetVector3Macro(Spacing, double);
+  ///@}
+
+  ///@{
+  /**
    * Threads that encode; 0, the default, takes all that OpenMP offers (OMP_NUM_THREADS).
    */
   vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
@@ -127,6 +139,8 @@ private:
   double Offset = 0.0;
   double Scale = 1.0;
   bool MaskNonFinite = true;
+  int Levels = 0;
+  double Spacing[3] = { 1.0, 1.0, 1.0 };
   int NumberOfThreads = 0;
   std::string ErrorMessage;
   std::unique_ptr<Work> Volume; // null before Start() and after an error

@@ -6,6 +6,7 @@
 #include "Codec/BlockStream.h"
 #include "Codec/LabelDetector.h"
 #include "Codec/Magnitude.h"
+#include "Codec/Pyramid.h"
 #include "Codec/RateFinder.h"
 #include "Codec/SampleEncoder.h"
 #include "Format/StreamArray.h"
@@ -38,6 +39,9 @@ vtkStandardNewMacro(vtkImageZFPCompress);
 
 namespace
 {
+// The part of the work that the volume's own stream takes, where levels are made, too.
+constexpr double StreamPart = 0.7;
+
 //------------------------------------------------------------------------------
 // Returns the first array that is not VTK's ghost array.
 vtkDataArray* FirstArray(vtkDataSetAttributes* attributes)
@@ -180,6 +184,9 @@ private:
   Status FindBlockBits(const int dims[3], const ChosenSamples& samples,
     const SampleEncoder& encoder, int& blockBits) const;
   Status Compress(const CompressedPart& part, vtkImageData* output) const;
+  Status MakeLevels(
+    const ChosenSamples& samples, const SampleEncoder& encoder, vtkCompressedVolume* volume) const;
+  ProgressCallback ProgressFrom(double begin, double end) const;
   void PassArrays(vtkImageData* output) const;
 
   vtkImageZFPCompress* Self;
@@ -341,7 +348,7 @@ Status vtkImageZFPCompress::Work::Compress(const CompressedPart& part, vtkImageD
   }
   BlockStream blocks(dims, blockBits, stream->GetPointer(0), this->Self->NumberOfThreads);
   if (!encoder.EncodeSlabs(blocks, 0, blocks.GetNumberOfSlabs(), samples.Array, samples.Component,
-        ProgressOf(this->Self)))
+        this->ProgressFrom(0.0, this->Self->Levels > 0 ? StreamPart : 1.0)))
   {
     return Status::Aborted();
   }
@@ -369,12 +376,50 @@ Status vtkImageZFPCompress::Work::Compress(const CompressedPart& part, vtkImageD
   volume->SetExtent(part.Covered[0], part.Covered[1], part.Covered[2], part.Covered[3],
     part.Covered[4], part.Covered[5]);
   volume->SetStream(stream);
+  if (Status status = this->MakeLevels(samples, encoder, volume); !status)
+  {
+    return status;
+  }
   volume->Write(output);
   this->Self->OutputRate = volume->GetRate();
   this->Self->OutputError = volume->GetLargestError();
   if (this->Self->PassOtherArrays)
   {
     this->PassArrays(output);
+  }
+  return {};
+}
+
+//------------------------------------------------------------------------------
+// Returns what reports the progress of a part of the work.
+ProgressCallback vtkImageZFPCompress::Work::ProgressFrom(double begin, double end) const
+{
+  const ProgressCallback report = ProgressOf(this->Self);
+  return [=](double fraction) { return report(begin + fraction * (end - begin)); };
+}
+
+//------------------------------------------------------------------------------
+Status vtkImageZFPCompress::Work::MakeLevels(
+  const ChosenSamples& samples, const SampleEncoder& encoder, vtkCompressedVolume* volume) const
+{
+  Pyramid pyramid(volume->GetDimensions(), this->Self->NumberOfThreads);
+  pyramid.Units = encoder.Units;
+  pyramid.Hidden = encoder.Hidden;
+  pyramid.HiddenCells = volume->GetHiddenCells();
+  if (Status status =
+        pyramid.Start(this->Input->GetSpacing(), this->Self->Levels, volume->GetBlockBits());
+      !status)
+  {
+    return Status::Error("There is ", status.GetMessage(), ".");
+  }
+  if (this->Self->Levels > 0 &&
+    !pyramid.AddSlices(samples.Array, samples.Component, this->ProgressFrom(StreamPart, 1.0)))
+  {
+    return Status::Aborted();
+  }
+  for (const auto& level : pyramid.Finish())
+  {
+    volume->AddLevel(level);
   }
   return {};
 }
@@ -434,6 +479,7 @@ void vtkImageZFPCompress::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaskNonFinite: " << (this->MaskNonFinite ? "on\n" : "off\n");
   os << indent << "KeepLabels: " << (this->KeepLabels ? "on\n" : "off\n");
   os << indent << "Tolerance: " << this->Tolerance << "\n";
+  os << indent << "Levels: " << this->Levels << "\n";
   os << indent << "PassOtherArrays: " << (this->PassOtherArrays ? "on\n" : "off\n");
   os << indent << "OutputRate: " << this->OutputRate << "\n";
   os << indent << "OutputError: " << this->OutputError << "\n";

@@ -5,6 +5,7 @@
 #include "Codec/ArrayMemory.h"
 #include "Codec/BlockGeometry.h"
 #include "Codec/BlockStream.h"
+#include "Codec/LevelShape.h"
 #include "Pieces/PipelineRequests.h"
 #include "Status.h"
 
@@ -138,7 +139,7 @@ void SetOutputSamples(vtkCompressedVolume* volume, vtkDataArray* samples, vtkIma
   {
     HideSamples(volume, samples, output);
   }
-  if (!volume->GetHiddenCells().IsEmpty())
+  if (!volume->GetHiddenCells().IsEmpty() && attributes == output->GetPointData())
   {
     HideCells(volume, output);
   }
@@ -195,6 +196,79 @@ Status DecodeSamples(vtkCompressedVolume* volume, int threads, const ProgressCal
   samples->SetName(volume->GetArrayName().c_str());
   return status;
 }
+
+//------------------------------------------------------------------------------
+// Gives an image that has a volume's geometry that of one of its levels: so many samples per axis,
+// every `steps`th of the volume's, the first of which is that of index `first`.
+void SetLevelGeometry(
+  const int first[3], const int dims[3], const int steps[3], bool cellData, vtkImageData* image)
+{
+  double start[3], spacing[3], origin[3];
+  int extent[6];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    start[axis] = first[axis] + (cellData ? 0.5 - 0.5 * steps[axis] : 0.0);
+    spacing[axis] = image->GetSpacing()[axis] * steps[axis];
+    extent[2 * axis] = 0;
+    extent[2 * axis + 1] = dims[axis] - (cellData ? 0 : 1);
+  }
+  image->TransformContinuousIndexToPhysicalPoint(start, origin);
+  image->SetExtent(extent);
+  image->SetSpacing(spacing);
+  image->SetOrigin(origin);
+}
+
+//------------------------------------------------------------------------------
+Status DecodeLevel(vtkCompressedVolume* volume, int number, int threads,
+  const ProgressCallback& progress, vtkImageData* output)
+{
+  vtkCompressedVolume* const level = volume->GetLevel(number);
+  if (!level)
+  {
+    return Status::Error("no level ", number, ": the volume has ", volume->GetNumberOfLevels(),
+      " levels of detail beside itself");
+  }
+  const int* const extent = volume->GetExtent();
+  const int first[3] = { extent[0], extent[2], extent[4] };
+  output->GetPointData()->Initialize(); // what hides samples of the volume came with its structure
+  output->GetCellData()->Initialize();
+  SetLevelGeometry(first, level->GetDimensions(), level->GetSteps(),
+    level->GetAssociation() == vtkCompressedVolume::CellData, output);
+  vtkSmartPointer<vtkDataArray> samples;
+  const Status status = DecodeSamples(level, threads, progress, samples);
+  if (status)
+  {
+    SetOutputSamples(level, samples, output);
+  }
+  return status;
+}
+
+//------------------------------------------------------------------------------
+// Tells the geometry of a level of point data that has been made by the image's present spacing.
+void PredictLevelGeometry(int number, vtkInformation* information)
+{
+  int extent[6], dims[3];
+  vtkNew<vtkImageData> image;
+  information->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
+  image->SetExtent(extent);
+  image->GetDimensions(dims);
+  image->SetSpacing(information->Get(vtkDataObject::SPACING()));
+  image->SetOrigin(information->Get(vtkDataObject::ORIGIN()));
+  if (information->Has(vtkDataObject::DIRECTION()))
+  {
+    image->SetDirectionMatrix(information->Get(vtkDataObject::DIRECTION()));
+  }
+  const std::vector<LevelShape> shapes = PlanLevels(dims, image->GetSpacing(), number);
+  if (static_cast<int>(shapes.size()) == number)
+  {
+    const LevelShape& shape = shapes.back();
+    const int first[3] = { extent[0], extent[2], extent[4] };
+    SetLevelGeometry(first, shape.Dimensions, shape.Steps, false, image);
+    information->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), image->GetExtent(), 6);
+    information->Set(vtkDataObject::SPACING(), image->GetSpacing(), 3);
+    information->Set(vtkDataObject::ORIGIN(), image->GetOrigin(), 3);
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -203,6 +277,10 @@ int vtkImageZFPDecompress::RequestInformation(
 {
   vtkInformation* out = outputVector->GetInformationObject(0);
   PipelineRequests::CopyGeometry(inputVector[0]->GetInformationObject(0), out);
+  if (this->Level > 0)
+  {
+    PredictLevelGeometry(this->Level, out);
+  }
   vtkDataObject::SetPointDataActiveScalarInfo(out, VTK_FLOAT, 1);
   return 1;
 }
@@ -238,6 +316,11 @@ int vtkImageZFPDecompress::RequestData(
     return 1; // the executive need not add a message of its own
   }
 
+  if (this->Level > 0)
+  {
+    this->Report(DecodeLevel(volume, this->Level, this->NumberOfThreads, ProgressOf(this), output));
+    return 1;
+  }
   int piece[6];
   input->GetExtent(piece);
   volume->Crop(piece);
@@ -253,17 +336,24 @@ int vtkImageZFPDecompress::RequestData(
       output->Crop(piece); // a subset has no samples around it
     }
   }
-  else if (!status.IsAborted())
+  this->Report(status);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkImageZFPDecompress::Report(const Status& status)
+{
+  if (!status && !status.IsAborted())
   {
     vtkErrorMacro("There is " << status.GetMessage() << ".");
     this->SetErrorCode(vtkErrorCode::UserError);
   }
-  return 1;
 }
 
 //------------------------------------------------------------------------------
 void vtkImageZFPDecompress::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Level: " << this->Level << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
 }

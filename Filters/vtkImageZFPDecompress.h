@@ -12,8 +12,14 @@
  * flagged in ghost arrays. Of a piece that several processes have of an image, the output also has
  * the samples around it that the stream covers, marked as ghosts.
  *
+ * With Level above 0 the output is that level of detail, if the volume has it: all of what the
+ * stream covers, with samples where those of the volume are of which it has every second, fourth,
+ * ... one. Its extent begins at 0, and its origin lies where the volume's first sample is; of cell
+ * data that sample is the centre of the first cell.
+ *
  * Errors, one message and an output without array: an input that is not a compressed volume, or
- * whose metadata or stream is inconsistent (see vtkCompressedVolume::Read); too little memory.
+ * whose metadata or stream is inconsistent (see vtkCompressedVolume::Read), or that has no such
+ * level; too little memory.
  *
  * @sa vtkImageZFPCompress vtkCompressedVolume vtkZFPReader
  */
@@ -23,12 +29,22 @@
 #include "vtkImageAlgorithm.h"
 #include "vtkProgIsoFiltersModule.h" // for export macro
 
+class Status;
+
 class VTKPROGISOFILTERS_EXPORT vtkImageZFPDecompress : public vtkImageAlgorithm
 {
 public:
   static vtkImageZFPDecompress* New();
   vtkTypeMacro(vtkImageZFPDecompress, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Level of detail to decode; 0, the default, is the volume itself.
+   */
+  vtkSetClampMacro(Level, int, 0, 11);
+  vtkGetMacro(Level, int);
+  ///@}
 
   ///@{
   /**
@@ -53,6 +69,9 @@ private:
   vtkImageZFPDecompress(const vtkImageZFPDecompress&) = delete;
   void operator=(const vtkImageZFPDecompress&) = delete;
 
+  void Report(const Status& status);
+
+  int Level = 0;
   int NumberOfThreads = 0;
 };
 

@@ -13,7 +13,7 @@ from ._numbers import finite_list
 from ._typing import Isovalues, Progress
 from ._vtk import image_data, observe_progress, vtk_errors
 from .geometry import GHOSTS, hide_points, plain_samples
-from .options import CompressionOptions, rate_choice
+from .options import CompressionOptions, checked_levels, rate_choice
 from .vtkProgIsoFilters import vtkCompressedVolume, vtkImageZFPCompress, vtkImageZFPDecompress
 
 _POINTS, _CELLS = 0, 1  # vtkDataObject::FieldAssociations
@@ -34,6 +34,7 @@ def compress_image(image: vtkImageData, options: CompressionOptions) -> vtkImage
     compressor.SetComponent(options.component)
     compressor.SetNumberOfThreads(options.threads)
     compressor.SetMaskNonFinite(bool(options.mask_nan))
+    compressor.SetLevels(checked_levels(options.levels))
     if options.array is not None:
         compressor.SetInputArrayToProcess(0, 0, 0, place, name)
     observe_progress(compressor, options.progress)
@@ -165,7 +166,7 @@ def _is_array(found: vtkDataArray, wanted: Any) -> bool:
 
 
 def decompress(
-    image: vtkImageData, *, threads: int = 0, progress: Progress | None = None
+    image: vtkImageData, *, level: int = 0, threads: int = 0, progress: Progress | None = None
 ) -> vtkImageData:
     """Decompress a compressed volume into scalars.
 
@@ -173,6 +174,8 @@ def decompress(
     ----------
     image : vtkmodules.vtkCommonDataModel.vtkImageData
         A compressed volume.
+    level : int, default: 0
+        Level of detail; 0 is the volume itself.
     threads : int, default: 0
         Threads that decode; 0 for one per core.
     progress : callable, optional
@@ -183,14 +186,18 @@ def decompress(
     vtkmodules.vtkCommonDataModel.vtkImageData
         The same geometry, with the values under the original array's name as point or cell
         scalars: float32, or float64 where the stream has custom units. Hidden samples are NaN and
-        marked in a ghost array, as hidden cells are.
+        marked in a ghost array, as hidden cells are. A level has its samples where those of the
+        volume are of which it has every second, fourth, ... one: the spacing is so many times
+        wider, the first sample is in the same place.
 
     Raises
     ------
     TypeError
-        When `image` is no image.
+        When `image` is no image, or the level no whole number.
+    ValueError
+        When the level is out of range.
     RuntimeError
-        When it is not a (valid) compressed volume.
+        When it is not a (valid) compressed volume, or has no such level.
 
     Examples
     --------
@@ -201,6 +208,7 @@ def decompress(
     """
     decompressor = vtkImageZFPDecompress()
     decompressor.SetInputData(image_data(image))
+    decompressor.SetLevel(checked_levels(level, "level"))
     decompressor.SetNumberOfThreads(threads)
     observe_progress(decompressor, progress)
     with vtk_errors("cannot decompress"):
@@ -244,7 +252,11 @@ def describe(image: vtkImageData) -> dict[str, Any]:
         offset + scale times the stream's), ``largest_error`` and ``mean_error`` (how far samples
         are off, in the units of the values; None where a file does not tell), ``array``,
         ``component``, ``association`` ("point" or "cell") and ``scalar_type`` (VTK's number of the
-        original type).
+        original type). ``levels`` has a dict for each level of detail, from level 1 on:
+        ``samples``, ``steps`` (samples of the volume from one of the level to the next, along x, y
+        and z), ``rate``, ``block_bits``, ``stream_bytes``, ``range``, ``largest_error`` and
+        ``mean_error`` (of the level's own samples), and ``largest_distance``: no sample of the
+        original is farther from the level's interpolant, except where something is hidden.
 
     Raises
     ------
@@ -269,6 +281,24 @@ def describe(image: vtkImageData) -> dict[str, Any]:
         "component": volume.GetComponent(),
         "association": "cell" if volume.GetAssociation() else "point",
         "scalar_type": volume.GetScalarType(),
+        "levels": [
+            _describe_level(volume.GetLevel(number))
+            for number in range(1, volume.GetNumberOfLevels() + 1)
+        ],
+    }
+
+
+def _describe_level(level: vtkCompressedVolume) -> dict[str, Any]:
+    return {
+        "samples": list(level.GetDimensions()),
+        "steps": list(level.GetSteps()),
+        "rate": level.GetRate(),
+        "block_bits": level.GetBlockBits(),
+        "stream_bytes": level.GetStream().GetNumberOfValues(),
+        "range": list(level.GetRange()),
+        "largest_error": level.GetLargestError(),
+        "mean_error": level.GetMeanError(),
+        "largest_distance": level.GetLargestDistance(),
     }
 
 

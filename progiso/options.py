@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from operator import index
 from typing import Any, TypedDict, TypeVar
 
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction
@@ -29,9 +30,13 @@ class CompressionOptions:
     component: int = 0
     axes: str | None = None
     mask_nan: bool = True
+    levels: int = 0
     threads: int = 0
     progress: Progress | None = None
 
+
+#: Most levels of detail that a volume may have.
+MAX_LEVELS = 11
 
 #: Bits per sample of what is not labels, where nothing else is asked for.
 DEFAULT_RATE = 8.0
@@ -88,6 +93,30 @@ def rate_choice(rate: Rate = None, tolerance: float | None = None) -> RateChoice
     return RateChoice(bits)
 
 
+def checked_levels(levels: int, name: str = "levels") -> int:
+    """Return a number of levels of detail, or that of one, which is from 0 to 11.
+
+    Raises
+    ------
+    TypeError
+        When it is no whole number.
+    ValueError
+        When it is out of range.
+
+    Examples
+    --------
+    >>> checked_levels(3)
+    3
+    """
+    try:
+        number = index(levels)
+    except TypeError:
+        raise TypeError(f"{name} must be a whole number, got {levels!r:.60}") from None
+    if not 0 <= number <= MAX_LEVELS:
+        raise ValueError(f"{name} must be from 0 to {MAX_LEVELS}, got {number}")
+    return number
+
+
 def _is_auto(rate: Rate) -> bool:
     return isinstance(rate, str) and rate == "auto"
 
@@ -133,6 +162,7 @@ class EncodingKeywords(TypedDict, total=False):
     component: int
     axes: str | None
     mask_nan: bool
+    levels: int
     threads: int
     progress: Progress | None
 

@@ -89,11 +89,10 @@ vtkInformationObjectBaseKey* IntactKey()
 vtkSmartPointer<vtkTypeUInt64Array> MakeStamp(
   vtkUnsignedCharArray* stream, vtkTypeUInt32Array* checksums)
 {
-  const std::size_t bytes = sizeof(vtkTypeUInt32) * checksums->GetNumberOfValues();
   auto stamp = vtkSmartPointer<vtkTypeUInt64Array>::New();
   stamp->InsertNextValue(reinterpret_cast<std::uintptr_t>(stream->GetPointer(0)));
   stamp->InsertNextValue(stream->GetMTime());
-  stamp->InsertNextValue(Add(0, checksums->GetPointer(0), bytes));
+  stamp->InsertNextValue(Checksums::OfChecksums(checksums));
   return stamp;
 }
 }
@@ -171,6 +170,13 @@ bool Checksums::IsKnownIntact(vtkUnsignedCharArray* stream, vtkTypeUInt32Array* 
   return known &&
     std::equal(
       now->GetPointer(0), now->GetPointer(0) + now->GetNumberOfValues(), known->GetPointer(0));
+}
+
+//------------------------------------------------------------------------------
+vtkTypeUInt32 Checksums::OfChecksums(vtkTypeUInt32Array* checksums)
+{
+  const std::size_t bytes = sizeof(vtkTypeUInt32) * checksums->GetNumberOfValues();
+  return Add(0, checksums->GetPointer(0), bytes);
 }
 
 //------------------------------------------------------------------------------

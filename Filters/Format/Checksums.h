@@ -35,6 +35,9 @@ void SetIntact(vtkUnsignedCharArray* stream, vtkTypeUInt32Array* checksums);
 bool IsKnownIntact(vtkUnsignedCharArray* stream, vtkTypeUInt32Array* checksums);
 ///@}
 
+/// Computes the checksum of a stream's checksums, by which one stream is told from another.
+vtkTypeUInt32 OfChecksums(vtkTypeUInt32Array* checksums);
+
 /// Computes the checksum of all arrays whose names begin with `prefix`, in the order of their
 /// names, but for two. It depends on names and values, and not on the width of integers.
 vtkTypeUInt32 OfFields(

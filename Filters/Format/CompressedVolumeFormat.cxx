@@ -5,6 +5,7 @@
 #include "Codec/MacrocellErrors.h"
 #include "Format/Checksums.h"
 #include "Format/FieldArrays.h"
+#include "Format/LevelFormat.h"
 #include "Format/SampleGrid.h"
 #include "Format/StreamArray.h"
 #include "Pieces/HidingFlags.h"
@@ -566,7 +567,7 @@ Status CompressedVolumeFormat::Read(vtkImageData* image, vtkCompressedVolume* vo
                                : "there is no image");
   }
   for (const auto& read : { ReadNumbers, ReadGeometry, ReadArrayName, ReadStream, ReadUnits,
-         ReadErrors, ReadHidden, CheckMetadata, CheckStream })
+         ReadErrors, ReadHidden, CheckMetadata, CheckStream, LevelFormat::Read })
   {
     if (Status status = read(image, volume); !status)
     {
@@ -613,6 +614,8 @@ void CompressedVolumeFormat::Write(vtkCompressedVolume* volume, vtkImageData* im
   volume->GetStream()->SetName(StreamName);
   fields->AddArray(volume->GetStream());
   StoreChecksums(volume, fields); // last: of what is there then
+  LevelFormat::Write(volume,
+    vtkArrayDownCast<vtkTypeUInt32Array>(fields->GetAbstractArray(PageChecksumsName)), fields);
 }
 
 //------------------------------------------------------------------------------
@@ -652,13 +655,10 @@ Status CompressedVolumeFormat::Place(vtkImageData* image)
 void CompressedVolumeFormat::SpeedUpRanges(vtkDataObject* object)
 {
   vtkFieldData* const fields = HasStream(object) ? object->GetFieldData() : nullptr;
-  auto* const usual =
-    vtkArrayDownCast<vtkUnsignedCharArray>(fields ? fields->GetAbstractArray(StreamName) : nullptr);
-  if (usual && !dynamic_cast<StreamArray*>(usual))
+  if (fields)
   {
-    vtkNew<StreamArray> stream;
-    stream->ShallowCopy(usual);
-    fields->AddArray(stream);
+    StreamArray::Replace(fields, StreamName);
+    LevelFormat::SpeedUpRanges(fields);
   }
 }
 
@@ -669,4 +669,5 @@ void CompressedVolumeFormat::Remove(vtkDataObject* object)
   {
     object->GetFieldData()->RemoveArray(name);
   }
+  LevelFormat::Remove(object->GetFieldData());
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "StreamArray.h"
 
+#include "vtkFieldData.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 
 #include <algorithm>
@@ -10,6 +12,18 @@
 StreamArray* StreamArray::New()
 {
   VTK_STANDARD_NEW_BODY(StreamArray);
+}
+
+//------------------------------------------------------------------------------
+void StreamArray::Replace(vtkFieldData* fields, const char* name)
+{
+  auto* const usual = vtkArrayDownCast<vtkUnsignedCharArray>(fields->GetAbstractArray(name));
+  if (usual && !dynamic_cast<StreamArray*>(usual))
+  {
+    vtkNew<StreamArray> stream;
+    stream->ShallowCopy(usual);
+    fields->AddArray(stream);
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -13,10 +13,18 @@
 
 #include "vtkUnsignedCharArray.h"
 
+class vtkFieldData;
+
 class StreamArray : public vtkUnsignedCharArray
 {
 public:
   static StreamArray* New();
+
+  /**
+   * Puts an array of this class, on the same memory, in the place of an array of bytes of this
+   * name, if there is one.
+   */
+  static void Replace(vtkFieldData* fields, const char* name);
 
   /**
    * Finds the smallest and the largest byte, and looks at no more bytes than it needs. False if

@@ -276,6 +276,24 @@ def _draw_rates(records: list[dict[str, Any]]) -> dict[str, Figure]:
     return {"rates": figure}
 
 
+def _draw_level_spheres(records: list[dict[str, Any]]) -> dict[str, Figure]:
+    figure, axes = _figure(8, 4)
+    rows = [row for record in records for row in record["spheres"]]
+    largest = max(row["coarse_radius"] * 2 ** row["level"] for row in rows)
+    rows = [row for row in rows if row["coarse_radius"] * 2 ** row["level"] == largest]
+    names = dict.fromkeys(row["filter_name"] for row in rows)
+    for name, (color, marker) in zip(names, _CYCLE):
+        points = [(row["level"], row["surface"]) for row in rows if row["filter_name"] == name]
+        axes.plot(*zip(*points), color=color, marker=marker, label=name)
+    axes.set_ylim(bottom=0)
+    axes.set_xticks(sorted({row["level"] for row in rows}))
+    axes.set_xlabel("level")
+    axes.set_ylabel("displacement × radius,\nin voxels of the level")
+    axes.set_title(f"sphere of {number(largest)} voxels")
+    axes.legend()
+    return {"level_spheres": figure}
+
+
 def _line(points: list[dict[str, Any]]) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
     """Split a series into the points along one setting and those that stand alone."""
     line = [point for point in points if point["label"] != DEFAULT_DISTANCE]
@@ -481,6 +499,7 @@ _DRAW = {
     "protocol": _draw_protocol,
     "errors": _draw_errors,
     "rates": _draw_rates,
+    "level_spheres": _draw_level_spheres,
     "image_scaling": _draw_image_scaling,
     "volume_scaling": _draw_volume_scaling,
     "budget": _draw_budget,

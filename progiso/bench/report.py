@@ -19,6 +19,7 @@ from .errors import DEFAULT_DISTANCE
 from .fields import parse_field
 from .first_image import TIMES
 from .interactive import BASELINE
+from .level_report import tables_of_levels, tables_of_spheres
 from .literature import BANDWIDTH, SOURCE, literature
 from .volume_mapper import VolumeMapper
 
@@ -884,7 +885,7 @@ def _growth_rows(report: _Report, record: dict[str, Any]) -> Iterator[list[str]]
 
 
 #: Kinds of measurements without times.
-_UNTIMED = {"rates"}
+_UNTIMED = {"rates", "level_spheres", "levels"}
 
 _SECTIONS = {
     "peers": _peers,
@@ -892,6 +893,8 @@ _SECTIONS = {
     "latency": _latency,
     "errors": _errors,
     "rates": _rates,
+    "level_spheres": lambda _report, records: tables_of_spheres(records),
+    "levels": lambda _report, records: tables_of_levels(records),
     "image_scaling": _image_scaling,
     "volume_scaling": _volume_scaling,
     "budget": _budget,

@@ -14,6 +14,7 @@ from .fields import Field, parse_field
 from .first_image import measure_first_image
 from .interactive import measure_interactive
 from .latency import measure_latency
+from .levels import measure_levels, measure_spheres
 from .peers import measure_peers
 from .protocol import measure_protocol
 from .rates import measure_rates
@@ -63,6 +64,7 @@ SETS = {
     ),
     "errors": Defaults("depth error against run time", (*SCANS, *SMALL), PEERS, 10),
     "rates": Defaults("errors and topology over the bits per sample", (*SCANS, *SMALL), PEERS, 10),
+    "levels": Defaults("filters and rates of levels of detail", (*SCANS, *SMALL), PEERS, 10),
     "budget": Defaults("time and memory within memory budgets", (LARGE[0],), PEERS, 10),
     "interactive": Defaults(
         "frames of a fly-through, beside VTK's and an earlier commit's", FLOWN_THROUGH, PEERS, 10
@@ -115,6 +117,11 @@ def _paper(fields: Sequence[Field], settings: Settings) -> list[Step]:
     return [step for pair in by_field for step in pair]
 
 
+def _levels(fields: Sequence[Field], settings: Settings) -> list[Step]:
+    spheres = ("level_spheres", "spheres", measure_spheres)
+    return [spheres, *_each("levels", measure_levels, fields, settings)]
+
+
 def _scaling(fields: Sequence[Field], settings: Settings) -> list[Step]:
     volumes = [
         ("volume_scaling", "same surface", partial(measure_volume_scaling, False, settings)),
@@ -156,6 +163,7 @@ _STEPS: dict[str, Callable[[Sequence[Field], Settings], list[Step]]] = {
     "peers": partial(_each, "peers", measure_peers),
     "errors": partial(_each, "errors", measure_errors),
     "rates": partial(_each, "rates", measure_rates),
+    "levels": _levels,
     "budget": partial(_each, "budget", measure_budget),
     "interactive": _interactive,
     "first-image": partial(_each, "first_image", measure_first_image),

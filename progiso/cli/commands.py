@@ -121,12 +121,24 @@ def compress(parsed: argparse.Namespace) -> None:
     if parsed.out.suffix.lower() == ".zfp":
         _remark("a .zfp file keeps the samples alone: no origin, no spacing, no array's name")
     about = progiso.describe(volume)
+    levels = about["levels"]
+    if parsed.levels and not levels:
+        _remark("no levels of detail: the volume has at most 64 samples along each axis")
     print(
         f"{parsed.out}: {parsed.out.stat().st_size} bytes, {about['stream_bytes']} of compressed "
         f"samples, {about['rate']:g} bits per sample, errors up to {about['largest_error']:.3g}"
+        + (
+            f", {sum(level['stream_bytes'] for level in levels)} of {_levels(levels)}"
+            * bool(levels)
+        )
     )
     if parsed.rate is None and parsed.tolerance is None and about["rate"] != DEFAULT_RATE:
         _remark(f"these are labels, which {about['rate']:g} bits per sample keep apart")
+
+
+def _levels(levels: list[dict[str, Any]]) -> str:
+    sizes = ", ".join("x".join(map(str, level["samples"])) for level in levels)
+    return f"{len(levels)} level{'s' * (len(levels) > 1)} of detail ({sizes})"
 
 
 def rate(parsed: argparse.Namespace) -> None:
@@ -142,9 +154,10 @@ def rate(parsed: argparse.Namespace) -> None:
 
 def decompress(parsed: argparse.Namespace) -> None:
     check_output(parsed.out, PLAIN_SUFFIXES, inputs=[getattr(parsed, "in")])
+    level, parsed.level = parsed.level, None  # of the compressed volume, not of a file of images
     image = _read(parsed, "in")
     with progress_bar("Decompressing") as progress:
-        image = progiso.decompress(image, progress=progress)
+        image = progiso.decompress(image, level=level or 0, progress=progress)
     _save(image, parsed.out)
     print(parsed.out)
 
@@ -163,8 +176,11 @@ def info(parsed: argparse.Namespace) -> None:
     for key, value in about.items():
         if isinstance(value, dict):
             print(f"{key}:")
+            levels = value.pop("levels", [])
             for inner, detail in value.items():
                 print(f"  {inner}: {_text(detail)}")
+            for number, level in enumerate(levels, 1):
+                print(f"  level {number}: {_text(level)}")
         else:
             print(f"{key}: {_text(value)}")
 

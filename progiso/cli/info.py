@@ -60,13 +60,22 @@ def verify_source(source: Source, path: Path) -> dict[str, str]:
     volume, decoded = vtkCompressedVolume(), [0.0, 0.0]
     if not volume.Read(image):
         raise ValueError(f"'{path}' is {volume.GetErrorMessage()}")
-    if not volume.FindDecodedRange(decoded):
-        raise ValueError(f"'{path}' is damaged: blocks decode to values that are not finite")
-    pages = -(-volume.GetStream().GetNumberOfValues() // volume.PageBytes)
-    checked = volume.GetHasChecksums() and path.suffix.lower() != ".zfp"
-    facts["stream"] = f"{pages} pages match their checksums" if checked else "has no checksums"
-    low, high = decoded
-    facts["blocks"] = f"{volume.GetNumberOfBlocks()} decode to values from {low:.9g} to {high:.9g}"
+    levels = [volume.GetLevel(number + 1) for number in range(volume.GetNumberOfLevels())]
+    for number, each in enumerate((volume, *levels)):
+        of_level = f" of level {number}" if number else ""
+        if not each.FindDecodedRange(decoded):
+            raise ValueError(
+                f"'{path}' is damaged: blocks{of_level} decode to values that are not finite"
+            )
+        pages = -(-each.GetStream().GetNumberOfValues() // each.PageBytes)
+        checked = each.GetHasChecksums() and path.suffix.lower() != ".zfp"
+        low, high = decoded
+        facts[f"stream{of_level}"] = (
+            f"{pages} pages match their checksums" if checked else "has no checksums"
+        )
+        facts[f"blocks{of_level}"] = (
+            f"{each.GetNumberOfBlocks()} decode to values from {low:.9g} to {high:.9g}"
+        )
     return facts
 
 

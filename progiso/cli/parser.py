@@ -149,6 +149,10 @@ def _add_compress(subparsers: _Subparsers) -> None:
     _add_input(command, "in")
     command.add_argument("out", metavar="OUT", type=Path, help="a .vti or .zfp file")
     _add_compression(command)
+    command.add_argument(
+        "--levels", type=int, metavar="N",
+        help="most levels of detail to make beside the volume (default: 0)",
+    )  # fmt: skip
     _add_threads(command)
     command.add_argument(
         "--appended", action="store_true",

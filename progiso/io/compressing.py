@@ -32,6 +32,7 @@ def compress(
     component: int = 0,
     axes: str | None = None,
     mask_nan: bool = True,
+    levels: int = 0,
     threads: int = 0,
     progress: Progress | None = None,
 ) -> vtkImageData:
@@ -65,6 +66,12 @@ def compress(
         the names of an xarray's dimensions say.
     mask_nan : bool, default: True
         Whether NaN and infinite samples are hidden, too; otherwise they are an error.
+    levels : int, default: 0
+        Most levels of detail to make beside the volume, up to 11: coarser copies for far views.
+        Each has half of the samples along the axes whose samples lie nearest to each other; the
+        last one has at most 64 along each axis, and a volume that has no more gets none. They take
+        20 % of the volume's bits at 8 bits per sample, 26 % at 4; `describe` lists them, and
+        `decompress` decodes them.
     threads : int, default: 0
         Threads that encode; 0 for one per core.
     progress : callable, optional
@@ -101,6 +108,7 @@ def compress(
         component=component,
         axes=axes,
         mask_nan=mask_nan,
+        levels=levels,
         threads=threads,
         progress=progress,
     )
@@ -151,8 +159,8 @@ def compress_file(
     selection : progiso.io.Selection, optional
         What of the file is wanted, where it holds more than one volume.
     **options
-        ``rate``, ``array``, ``component``, ``mask_nan``, ``threads`` and ``progress`` as in
-        `compress`.
+        ``rate``, ``tolerance``, ``array``, ``component``, ``mask_nan``, ``levels``, ``threads`` and
+        ``progress`` as in `compress`.
 
     Returns
     -------
@@ -198,7 +206,12 @@ def compress_source(source: Source, options: CompressionOptions) -> vtkImageData
         return compress_image(image, replace(options, progress=_half(options.progress, 1)))
     about, count = source.about, source.about.components
     volume = compress_passes(
-        lambda: _slabs(source), about.dimensions, about.name, options, components=count
+        lambda: _slabs(source),
+        about.dimensions,
+        about.name,
+        options,
+        components=count,
+        spacing=about.geometry.spacing,
     )
     source.place(volume)
     return volume

@@ -15,12 +15,12 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkDataArray
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
-from .._typing import Array, Dimensions, Progress, Rate
+from .._typing import Array, Dimensions, Progress, Rate, Vector
 from .._vtk import vtk_errors
 from .._warnings import warn_user
 from ..compression import describe
 from ..geometry import plain_samples, set_axes
-from ..options import CompressionOptions, RateChoice, rate_choice
+from ..options import CompressionOptions, RateChoice, checked_levels, rate_choice
 from ..vtkProgIsoFilters import (
     vtkCompressedVolumeBuilder,
     vtkSampleRateFinder,
@@ -45,6 +45,7 @@ def compress_slabs(
     spacing: Sequence[float] = (1.0, 1.0, 1.0),
     origin: Sequence[float] = (0.0, 0.0, 0.0),
     mask_nan: bool = True,
+    levels: int = 0,
     units: tuple[float, float] | None = None,
     threads: int = 0,
     progress: Progress | None = None,
@@ -79,6 +80,9 @@ def compress_slabs(
         Distance of samples along x, y and z, and the place of the first.
     mask_nan : bool, default: True
         Whether NaN and infinite samples are hidden, as in `compress`.
+    levels : int, default: 0
+        Most levels of detail, as in `compress`: they are made as slabs come, and memory holds some
+        slices of each.
     units : tuple of 2 float, optional
         Offset and scale: the stream has (value - offset) / scale, as float32. So it can hold small
         differences on a large offset, and values beyond float32. By default those that `compress`
@@ -115,13 +119,18 @@ def compress_slabs(
     [32, 32, 32]
     """
     options = CompressionOptions(
-        rate=rate, tolerance=tolerance, mask_nan=mask_nan, threads=threads, progress=progress
+        rate=rate,
+        tolerance=tolerance,
+        mask_nan=mask_nan,
+        levels=levels,
+        threads=threads,
+        progress=progress,
     )
     size, passes = _sized_passes(slabs, dimensions, threads)
     if callable(passes):
-        volume = compress_passes(passes, size, name, options, units=units)
+        volume = compress_passes(passes, size, name, options, units=units, spacing=spacing)
     else:
-        volume = build(passes, size, name, options, units=units)
+        volume = build(passes, size, name, options, units=units, spacing=spacing)
     set_axes(volume, np.diag(np.asarray(spacing, float)), origin)
     return volume
 
@@ -151,6 +160,7 @@ def compress_passes(
     *,
     units: tuple[float, float] | None = None,
     components: int = 1,
+    spacing: Vector = (1.0, 1.0, 1.0),
 ) -> vtkImageData:
     """Compress slabs of whole layers of blocks that can be gone through several times.
 
@@ -163,7 +173,9 @@ def compress_passes(
     if choice.tolerance or choice.keep_labels:
         rate = _find_rate(slabs, dimensions, options, choice, units, components)
         options = replace(options, rate=rate, tolerance=None)
-    return build(slabs(), dimensions, name, options, units=units, components=components)
+    return build(
+        slabs(), dimensions, name, options, units=units, components=components, spacing=spacing
+    )
 
 
 def _find_rate(
@@ -257,6 +269,7 @@ def build(
     *,
     units: tuple[float, float] | None = None,
     components: int = 1,
+    spacing: Vector = (1.0, 1.0, 1.0),
 ) -> vtkImageData:
     """Compress slabs of whole layers of blocks; see `compress_slabs`.
 
@@ -264,6 +277,7 @@ def build(
     several, whose masked samples are hidden, or VTK's. Where `units` are None nobody looked for
     them: values that float32 cannot hold are compressed as they are, and a warning says so. Where
     the rate is None nobody looked for labels, and a warning tells that they have not been kept.
+    Levels of detail halve axes by the spacing, which the image does not get.
     """
     offset, scale = (0.0, 1.0) if units is None else map(float, units)
     builder = vtkCompressedVolumeBuilder()
@@ -272,6 +286,8 @@ def build(
     builder.SetMaskNonFinite(bool(options.mask_nan))
     builder.SetOffset(offset)
     builder.SetScale(scale)
+    builder.SetLevels(checked_levels(options.levels))
+    builder.SetSpacing(*map(float, spacing))
     choice = rate_choice(options.rate, options.tolerance)
     if choice.tolerance:
         raise ValueError("slabs that come once take a rate, not a tolerance")

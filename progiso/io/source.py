@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
-from .._typing import Array, Dimensions, Progress
+from .._typing import Array, Dimensions, Progress, Vector
 from ..geometry import hide_points, image_from_array, set_axes
 from ..vtkProgIsoFilters import vtkCompressedVolume
 from .errors import reading
@@ -58,6 +58,11 @@ class Geometry:
     extent_start: Dimensions = (0, 0, 0)
     units: str | None = None
     space: str | None = None
+
+    @property
+    def spacing(self) -> Vector:
+        """Return the distances from one sample to the next along x, y and z."""
+        return np.linalg.norm(self.axes, axis=0)
 
     def place(self, image: vtkImageData) -> None:
         """Give an image of the same dimensions this place in the world."""

@@ -56,6 +56,23 @@ def test_decompress(folder):
     )
 
 
+def test_levels(folder):
+    """Levels of detail are made, told and decoded."""
+    values = np.random.default_rng(1).random((70, 20, 30), np.float32)
+    progiso.save(progiso.image_from_array(values.ravel(), (30, 20, 70)), folder / "long.vti")
+    text = call_progiso(folder, "compress", "long.vti", "levels.vti", "--rate", 4, "--levels", 3)
+    assert "of 1 level of detail (16x11x36)" in text
+    assert "level 1: samples 16 11 36, steps 2 2 2, rate 7" in call_progiso(
+        folder, "info", "levels.vti"
+    )
+    about = json.loads(call_progiso(folder, "info", "levels.vti", "--json"))["compressed"]
+    assert about["levels"][0]["samples"] == [16, 11, 36]
+    assert "blocks of level 1: 108 decode" in call_progiso(folder, "info", "levels.vti", "--verify")
+    call_progiso(folder, "decompress", "levels.vti", "level.vti", "--level", 1)
+    level = progiso.read(folder / "level.vti")
+    assert level.GetDimensions() == (16, 11, 36) and level.GetSpacing() == (2, 2, 2)
+
+
 def test_compress_appended(folder):
     call_progiso(folder, "compress", "plain.vti", "appended.vti", "--rate", 6, "--appended")
     assert b'encoding="raw"' in (folder / "appended.vti").read_bytes()

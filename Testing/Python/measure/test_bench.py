@@ -38,6 +38,7 @@ KINDS = {
     "peers": {"peers"},
     "errors": {"errors"},
     "rates": {"rates"},
+    "levels": {"level_spheres", "levels"},
     "budget": {"budget"},
     "interactive": {"interactive"},
     "first-image": {"first_image"},
