@@ -8,6 +8,7 @@
 #include "vtkIsosurfaceBlocksMapper.h"
 #include "vtkPVIsosurfaceLODVolume.h"
 
+#include "vtkBoundingBox.h"
 #include "vtkCellData.h"
 #include "vtkColorTransferFunction.h"
 #include "vtkCompressedVolume.h"
@@ -18,6 +19,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMath.h"
+#include "vtkMatrix4x4.h"
 #include "vtkObjectFactory.h"
 #include "vtkOutlineSource.h"
 #include "vtkPVRenderView.h"
@@ -46,6 +48,20 @@ constexpr int SPECULATION_OFF = 1;
 constexpr int Magnitude = -1; // as component of a vector, for the mapper
 
 using Message = vtkIsosurfaceBlocksMapper::Message;
+
+// Finds the box around a transformed one; ParaView's own is turned inside out by a mirroring scale.
+void TransformBounds(const double bounds[6], vtkMatrix4x4* matrix, double transformed[6])
+{
+  vtkBoundingBox box;
+  for (int corner = 0; corner < 8 && vtkMath::AreBoundsInitialized(bounds); ++corner)
+  {
+    double place[4] = { bounds[corner % 2], bounds[2 + corner / 2 % 2], bounds[4 + corner / 4], 1 };
+    matrix->MultiplyPoint(place, place);
+    box.AddPoint(place);
+  }
+  vtkMath::UninitializeBounds(transformed);
+  box.GetBounds(transformed);
+}
 
 Message Join(const Message& first, const Message& second)
 {
@@ -106,7 +122,9 @@ int vtkProgressiveIsosurfaceRepresentation::ProcessViewRequest(
     {
       outInfo->Remove(vtkPVRenderView::NEED_ORDERED_COMPOSITING());
     }
-    vtkPVRenderView::SetGeometryBounds(inInfo, this, this->DataBounds, this->Actor->GetMatrix());
+    double bounds[6];
+    TransformBounds(this->DataBounds, this->Actor->GetMatrix(), bounds);
+    vtkPVRenderView::SetGeometryBounds(inInfo, this, bounds);
   }
   else if (requestType == vtkPVView::REQUEST_RENDER())
   {

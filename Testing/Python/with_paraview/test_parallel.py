@@ -69,7 +69,9 @@ def test_server(build, tmp_path):
     under_x("pvpython", SCRIPTS / "remote.py", build, tmp_path, **MPI)
 
 
-@pytest.mark.parametrize("name", ["remote_changes", "remote_blocks", "remote_errors", "cropping"])
+@pytest.mark.parametrize(
+    "name", ["remote_changes", "remote_blocks", "remote_errors", "cropping", "cutting"]
+)
 def test_same_as_on_a_server(name, build, tmp_path):
     """Whatever is changed, the server's processes show what one process does."""
     under_x("pvpython", SCRIPTS / f"{name}.py", build, tmp_path, **MPI)

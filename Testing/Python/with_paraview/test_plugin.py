@@ -24,7 +24,7 @@ NAMES = "show_plain show_compressed opaque zfp_files interactive errors".split()
 NAMES += "cell_data panel trace contour color_by hidden translucent blocks".split()
 NAMES += "many_isovalues magnitude still volume_state grids ranges compress".split()
 NAMES += "picking color_maps failures".split()
-NAMES += "cutting turning lights waiting".split()
+NAMES += "turning lights waiting mirrored".split()
 
 
 @pytest.mark.parametrize("name", NAMES)
