@@ -17,8 +17,8 @@ using HalvingFilter::Taps;
 // Products come before sums: so the largest floats do not overflow to what is no number.
 inline float HalfBand(float before3, float before, float at, float after, float after3)
 {
-  const float value = 0.5f * at + 0.28125f * before + 0.28125f * after - 0.03125f * before3 -
-    0.03125f * after3;
+  const float value =
+    0.5f * at + 0.28125f * before + 0.28125f * after - 0.03125f * before3 - 0.03125f * after3;
   const float low = std::min(std::min(before, after), at);
   const float high = std::max(std::max(before, after), at);
   return std::min(std::max(value, low), high);
@@ -102,8 +102,7 @@ private:
 
 //------------------------------------------------------------------------------
 // Makes one coarse sample of a row.
-void FilterAt(
-  const LevelRow& row, int count, int coarse, float* values, unsigned char* hidden)
+void FilterAt(const LevelRow& row, int count, int coarse, float* values, unsigned char* hidden)
 {
   Neighbourhood near;
   const int at = 2 * coarse;

@@ -360,8 +360,9 @@ void LevelFilter::Compare(const std::vector<LevelSlice>& made)
   const int height = this->Dimensions[1];
   const vtkTypeInt64 number = static_cast<vtkTypeInt64>(comparisons.size()) * height;
   float most = this->LargestDistance;
-#pragma omp parallel for num_threads(this->Threads) schedule(dynamic, RowsPerTurn) \
-  reduction(max : most) if (IsWorthThreads(number, this->Dimensions[0]))
+#pragma omp parallel for num_threads(this->Threads) schedule(dynamic, RowsPerTurn)                 \
+  reduction(max                                                                                    \
+            : most) if (IsWorthThreads(number, this->Dimensions[0]))
   for (vtkTypeInt64 row = 0; row < number; ++row)
   {
     const int y = static_cast<int>(row % height);

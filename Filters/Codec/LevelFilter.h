@@ -80,7 +80,7 @@ private:
   LevelShape Shape;
   int Threads;
   Window Fine;
-  Window Reduced; // along x and y
+  Window Reduced;  // along x and y
   LevelSlice Last; // the coarse slice made last
   int Made = 0;    // coarse slices
   int MostKept = 0;

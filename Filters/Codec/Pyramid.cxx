@@ -98,9 +98,9 @@ private:
   vtkNew<vtkUnsignedCharArray> Stream;
   SampleEncoder Encoder;
   vtkBlockMask CellMask;
-  int Capacity = 0;                   // slices that are encoded at a time
-  vtkNew<vtkFloatArray> Kept;         // slices that are not yet encoded
-  std::vector<unsigned char> Hidden;  // of these; empty if none is
+  int Capacity = 0;                  // slices that are encoded at a time
+  vtkNew<vtkFloatArray> Kept;        // slices that are not yet encoded
+  std::vector<unsigned char> Hidden; // of these; empty if none is
   std::vector<unsigned char> Cells;
   int InKept = 0;  // slices
   int Encoded = 0; // slabs
@@ -115,10 +115,10 @@ Status Pyramid::Level::Allocate()
   this->Capacity = BlockSide *
     static_cast<int>(std::clamp<vtkTypeInt64>(slices / BlockSide, 1, BlocksAlong(dims[2])));
   const Status status = AllocateArray(this->Stream.Get(), bytes, "a level", dims);
-  return status ? AllocateArray(this->Kept.Get(),
-                    static_cast<vtkTypeInt64>(this->Capacity * this->SliceSize()),
-                    "slices of a level", dims)
-                : status;
+  return status
+    ? AllocateArray(this->Kept.Get(), static_cast<vtkTypeInt64>(this->Capacity * this->SliceSize()),
+        "slices of a level", dims)
+    : status;
 }
 
 //------------------------------------------------------------------------------
@@ -284,11 +284,10 @@ std::vector<LevelSlice> Pyramid::ReadSlices(
   }
   ReadSlicesWorker worker;
   const int width = this->Dimensions[0];
-  if (!vtkArrayDispatch::Dispatch::Execute(array, worker, component, first, width, this->Units,
-        this->Hidden, this->Threads, slices))
+  if (!vtkArrayDispatch::Dispatch::Execute(
+        array, worker, component, first, width, this->Units, this->Hidden, this->Threads, slices))
   {
-    worker(
-      array, component, first, width, this->Units, this->Hidden, this->Threads, slices);
+    worker(array, component, first, width, this->Units, this->Hidden, this->Threads, slices);
   }
   for (LevelSlice& slice : slices)
   {

@@ -29,8 +29,8 @@ void ForEachRow(int threads, std::vector<LevelSlice>& slices, int width, const B
 {
   const std::size_t height = slices.empty() ? 0 : slices.front().Values.size() / width;
   const vtkTypeInt64 number = static_cast<vtkTypeInt64>(slices.size() * height);
-#pragma omp parallel for num_threads(threads) schedule(dynamic, RowsPerTurn) \
-  if (IsWorthThreads(number, width))
+#pragma omp parallel for num_threads(threads)                                                      \
+  schedule(dynamic, RowsPerTurn) if (IsWorthThreads(number, width))
   for (vtkTypeInt64 row = 0; row < number; ++row)
   {
     LevelSlice& slice = slices[row / height];

@@ -143,12 +143,10 @@ TEST(HalvingFilter, IsItsFormula)
   for (int i = 2; i <= 18; ++i)
   {
     const float* const at = &fine.Values[2 * i];
-    const double filtered =
-      (16.0 * at[0] + 9.0 * (at[-1] + at[1]) - (at[-3] + at[3])) / 32.0;
+    const double filtered = (16.0 * at[0] + 9.0 * (at[-1] + at[1]) - (at[-3] + at[3])) / 32.0;
     const auto range = std::minmax({ at[-1], at[0], at[1] });
     limited += filtered < range.first || filtered > range.second;
-    EXPECT_NEAR(coarse.Values[i],
-      std::clamp<double>(filtered, range.first, range.second), 1e-6);
+    EXPECT_NEAR(coarse.Values[i], std::clamp<double>(filtered, range.first, range.second), 1e-6);
   }
   EXPECT_GT(limited, 0);
   EXPECT_LT(limited, 17);
@@ -187,10 +185,10 @@ TEST(HalvingFilter, WeighsVisibleSamples)
   const Line coarse = Along(fine);
   EXPECT_EQ(coarse.Hidden, (Flags{ 0, 0, 0, 1, 0, 0 }));
   EXPECT_EQ(coarse.Values[0], 1.0f);
-  EXPECT_EQ(coarse.Values[1], 3.0f);                // (2 + 4) / 2
-  EXPECT_FLOAT_EQ(coarse.Values[2], 14.0f / 3.0f);  // (4 + 2 * 5) / 3
-  EXPECT_FLOAT_EQ(coarse.Values[4], 28.0f / 3.0f);  // (2 * 9 + 10) / 3
-  EXPECT_EQ(coarse.Values[5], 10.0f);               // beyond the border
+  EXPECT_EQ(coarse.Values[1], 3.0f);               // (2 + 4) / 2
+  EXPECT_FLOAT_EQ(coarse.Values[2], 14.0f / 3.0f); // (4 + 2 * 5) / 3
+  EXPECT_FLOAT_EQ(coarse.Values[4], 28.0f / 3.0f); // (2 * 9 + 10) / 3
+  EXPECT_EQ(coarse.Values[5], 10.0f);              // beyond the border
   fine.Hidden = { 1, 0, 0, 0, 0, 0, 0, 0, 0, 1 };
   const Line borders = Along(fine);
   EXPECT_EQ(borders.Hidden, (Flags{ 0, 0, 0, 0, 0, 1 }));

@@ -65,8 +65,7 @@ public:
       const int last = std::min(z + this->Slices, this->Dims[2]);
       vtkNew<vtkFloatArray> array;
       array->SetNumberOfValues((last - z) * size);
-      std::copy(
-        &samples[z * size], &samples[0] + last * size, array->GetPointer(0));
+      std::copy(&samples[z * size], &samples[0] + last * size, array->GetPointer(0));
       EXPECT_TRUE(this->Made.AddSlices(array, 0, [](double) { return true; }));
     }
     return this->Made.Finish();
@@ -165,8 +164,8 @@ TEST(Pyramid, KeepsBorders)
       for (const int x : { 0, 33 })
       {
         const int from[3] = { std::min(2 * x, 65), 2 * y, std::min(2 * z, 3) };
-        EXPECT_NEAR(coarse[x + 34 * (y + 33 * z)],
-          fine[from[0] + 66 * (from[1] + 65 * from[2])], error);
+        EXPECT_NEAR(
+          coarse[x + 34 * (y + 33 * z)], fine[from[0] + 66 * (from[1] + 65 * from[2])], error);
       }
     }
   }

@@ -223,8 +223,7 @@ private:
   Status CheckMetadata()
   {
     vtkTypeInt64 expected = 0;
-    if (Status status =
-          GetIntegers(this->Fields, this->Array("Checksum").c_str(), 1, &expected);
+    if (Status status = GetIntegers(this->Fields, this->Array("Checksum").c_str(), 1, &expected);
         !status)
     {
       return status;
@@ -306,8 +305,8 @@ void WriteLevel(Volume* level, const Names& names, vtkFieldData* fields)
   given->SetName(names("Stream").c_str());
   fields->AddArray(given);
   StreamArray::Replace(fields, names("Stream").c_str());
-  auto* const stream = vtkArrayDownCast<vtkUnsignedCharArray>(
-    fields->GetAbstractArray(names("Stream").c_str()));
+  auto* const stream =
+    vtkArrayDownCast<vtkUnsignedCharArray>(fields->GetAbstractArray(names("Stream").c_str()));
   const auto checksums = Checksums::OfPages(
     stream, Volume::StreamBytesFor(level->GetDimensions(), level->GetBlockBits()));
   checksums->SetName(names("PageChecksums").c_str());

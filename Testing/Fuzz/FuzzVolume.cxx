@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Runs vtkCompressedVolume::Read() on field data in any state, and decompresses, contours, crops
-// and writes what it accepts. What is written must be refused after the flip of any bit, and may
-// not crash after worse.
+// and writes what it accepts, also with levels of detail. What is written must be refused after the
+// flip of any bit, and may not crash after worse.
 #include "HostileImage.h"
 
 #include <vtkFlyingEdges3D.h>
@@ -182,6 +182,128 @@ void CheckDamage(vtkCompressedVolume* volume, Bytes& bytes)
 }
 }
 
+namespace
+{
+//------------------------------------------------------------------------------
+vtkBlockMask MakeMask(const int dims[3], Bytes& bytes)
+{
+  vtkBlockMask mask;
+  const vtkTypeInt64 blocks = vtkCompressedVolume::NumberOfBlocksFor(dims);
+  const bool hides = bytes.Flag();
+  for (vtkTypeInt64 block = 0; block < blocks && hides; ++block)
+  {
+    mask.Append(bytes.Flag() ? bytes.Take<vtkTypeUInt64>() : 0);
+  }
+  return mask;
+}
+
+//------------------------------------------------------------------------------
+// Makes a level of the one before, or sometimes of what cannot be one.
+vtkSmartPointer<vtkCompressedVolume> MakeLevel(vtkCompressedVolume* before, Bytes& bytes)
+{
+  int dims[3], steps[3];
+  before->GetDimensions(dims);
+  before->GetSteps(steps);
+  const int halves = bytes.Below(8);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const bool isHalved = (halves >> axis & 1) && dims[axis] > 2;
+    dims[axis] = isHalved ? dims[axis] / 2 + 1 : dims[axis];
+    steps[axis] *= isHalved ? 2 : 1;
+  }
+  const bool hostile = bytes.Byte() >= 192;
+  if (hostile)
+  {
+    dims[bytes.Below(3)] = 1 + bytes.Below(40);
+    steps[bytes.Below(3)] = static_cast<int>(bytes.Integer());
+  }
+  auto level = vtkSmartPointer<vtkCompressedVolume>::New();
+  level->SetDimensions(dims);
+  level->SetSteps(steps);
+  level->SetBlockBits(9 + bytes.Below(2040));
+  level->SetRange(hostile ? bytes.Number() : 0.0, hostile ? bytes.Number() : 1.0);
+  level->SetLargestError(hostile ? bytes.Number() : 0.5);
+  level->SetMeanError(hostile ? bytes.Number() : 0.5);
+  level->SetLargestDistance(hostile ? bytes.Number() : 0.5);
+  level->SetHiddenSamples(MakeMask(dims, bytes));
+  level->SetHiddenCells(MakeMask(dims, bytes));
+  vtkNew<vtkUnsignedCharArray> stream;
+  stream->SetNumberOfValues(vtkCompressedVolume::StreamBytesFor(dims, level->GetBlockBits()));
+  bytes.Fill(stream->GetPointer(0), stream->GetNumberOfValues());
+  level->SetStream(stream);
+  return level;
+}
+
+//------------------------------------------------------------------------------
+// Decodes all levels that are accepted.
+void CheckDecoding(vtkImageData* image, vtkCompressedVolume* volume)
+{
+  for (int i = 1; i <= volume->GetNumberOfLevels(); ++i)
+  {
+    vtkNew<vtkImageZFPDecompress> decompress;
+    decompress->SetInputData(image);
+    decompress->SetLevel(i);
+    CHECK(Update(decompress), "level " << i << " not decompressed");
+    const int* const dims = volume->GetLevel(i)->GetDimensions();
+    CHECK(SamplesOf(decompress->GetOutput())->GetNumberOfTuples() ==
+        static_cast<vtkIdType>(dims[0]) * dims[1] * dims[2],
+      "level " << i);
+  }
+}
+
+//------------------------------------------------------------------------------
+// Damages one array of a level: a bit flips, or it is cut short, or goes.
+void DamageLevel(vtkFieldData* fields, Bytes& bytes)
+{
+  const char* const names[] = { "Stream", "BlockBits", "Dimensions", "Steps", "Range", "Error",
+    "Distance", "HiddenSamples", "HiddenCells", "PageChecksums", "Checksum" };
+  const std::string name = "ProgIso.Level1." + std::string(names[bytes.Below(11)]);
+  auto* const array = vtkArrayDownCast<vtkDataArray>(fields->GetAbstractArray(name.c_str()));
+  const int kind = bytes.Below(4);
+  if (!array || kind == 0)
+  {
+    fields->RemoveArray(array ? name.c_str() : "ProgIso.Level1.Steps");
+  }
+  else if (kind == 1)
+  {
+    array->SetNumberOfTuples(array->GetNumberOfTuples() - 1);
+  }
+  else
+  {
+    const vtkTypeInt64 size = array->GetNumberOfValues() * array->GetDataTypeSize();
+    const vtkTypeInt64 at = bytes.Take<std::uint32_t>() % size;
+    static_cast<unsigned char*>(array->GetVoidPointer(0))[at] ^= 1 << bytes.Below(8);
+    array->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void CheckLevels(vtkImageData* source, Bytes& bytes)
+{
+  vtkNew<vtkCompressedVolume> volume, again;
+  CHECK(volume->Read(source), volume->GetErrorMessage());
+  const int number = 1 + bytes.Below(3);
+  vtkCompressedVolume* before = volume;
+  for (int i = 0; i < number; ++i)
+  {
+    const auto level = MakeLevel(before, bytes);
+    volume->AddLevel(level);
+    before = level;
+  }
+  const auto image = WithChecksums(volume);
+  const bool accepted = again->Read(image);
+  CHECK(accepted == (again->GetNumberOfLevels() == number), again->GetErrorMessage());
+  CHECK(accepted || again->GetErrorMessage().find("level") != std::string::npos,
+    again->GetErrorMessage());
+  if (accepted)
+  {
+    CheckDecoding(image, again);
+    DamageLevel(image->GetFieldData(), bytes);
+    CHECK(!again->Read(image) && again->GetNumberOfLevels() == 0, "a damaged level");
+  }
+}
+}
+
 //------------------------------------------------------------------------------
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
@@ -207,5 +329,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   CheckFlip(volume, bytes);
   CheckDamage(volume, bytes);
   CheckCrop(volume, whole, bytes);
+  CheckLevels(image, bytes);
   return 0;
 }

@@ -163,9 +163,7 @@ def test_levels_of_cells():
     assert len(cells) == np.prod(dims)
     assert cells[0] == pytest.approx(vtk_to_numpy(image.GetCellData().GetScalars())[0], abs=1e-2)
     first = np.array(level.GetCell(0).GetBounds()).reshape(3, 2).mean(axis=1)
-    assert first == pytest.approx(
-        np.array(image.GetCell(0).GetBounds()).reshape(3, 2).mean(axis=1)
-    )
+    assert first == pytest.approx(np.array(image.GetCell(0).GetBounds()).reshape(3, 2).mean(axis=1))
 
 
 def test_the_pipeline_knows_the_geometry(volume):

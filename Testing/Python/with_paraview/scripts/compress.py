@@ -93,6 +93,19 @@ found = values(simple.ZFPDecompress(Input=lengths), "place")
 wanted = numpy.sqrt((values(both, "place") ** 2).sum(axis=1))
 assert numpy.allclose(found, wanted, atol=1e-3), abs(found - wanted).max()
 
+# levels of detail: coarser copies, decoded where they lie, also by the filter behind
+long = simple.Wavelet(WholeExtent=[-40, 40, -9, 10, -9, 10])
+levels = simple.ZFPCompress(Input=long, Rate=16, Levels=3)
+level = simple.ZFPDecompress(Input=levels, Level=1)
+coarse = servermanager.Fetch(level)
+assert coarse.GetDimensions() == (41, 11, 11) and coarse.GetSpacing() == (2, 2, 2)
+assert coarse.GetBounds()[::2] == servermanager.Fetch(long).GetBounds()[::2]
+assert level.GetDataInformation().GetExtent() == (0, 40, 0, 10, 0, 10)
+contour = simple.Contour(Input=level, ContourBy=["POINTS", "RTData"], Isosurfaces=[150.0])
+assert servermanager.Fetch(contour).GetNumberOfCells() > 100
+level.Level = 2
+assert "no level 2: the volume has 1 levels" in errors(level)
+
 # a contour takes the place of what it is made of, also of a progressive isosurface
 display = session.show_isosurface(passed, view, Isovalues=[150.0])
 hints = surface.SMProxy.GetHints()
