@@ -21,6 +21,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkProgressiveIsosurfaceMapper.h"
+#include "vtkProgressiveIsosurfaceStatistics.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderWindowInteractor.h"
 #include "vtkRenderer.h"
@@ -92,6 +93,12 @@ bool HasToDraw(vtkProgressiveIsosurfaceMapper* mapper, vtkContourValues* isovalu
   const double* const values = isovalues->GetValues();
   return std::any_of(values, values + isovalues->GetNumberOfContours(),
     [&](double value) { return range[0] <= value && value <= range[1]; });
+}
+
+// Is the camera at rest? ParaView tells windows by the rate that it wants.
+bool IsStill(vtkRenderWindow* window)
+{
+  return window->GetDesiredUpdateRate() < 1.0;
 }
 
 // Where the camera is, or for a parallel projection the direction towards it, among the blocks.
@@ -172,6 +179,7 @@ bool vtkIsosurfaceBlocksMapper::UpdateInputs(vtkVolumeProperty* property)
 void vtkIsosurfaceBlocksMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
 {
   this->NumberOfComplete = 0;
+  this->Settings->SetImageReductionFactor(this->FindReduction(renderer->GetRenderWindow()));
   this->UpdateMappers(volume->GetProperty());
   const double seconds = this->FindTime(renderer->GetRenderWindow());
   for (const auto& mapper : this->Drawn)
@@ -236,8 +244,31 @@ double vtkIsosurfaceBlocksMapper::FindTime(vtkRenderWindow* window)
 {
   vtkRenderWindowInteractor* interactor = window->GetInteractor();
   const bool goesOn = interactor && interactor->IsA("QVTKInteractor");
-  const bool still = window->GetDesiredUpdateRate() < 1.0; // as ParaView sets it
-  return still && !goesOn ? VTK_DOUBLE_MAX : this->Settings->GetTimeAllowance();
+  return IsStill(window) && !goesOn ? VTK_DOUBLE_MAX : this->Settings->GetTimeAllowance();
+}
+
+//------------------------------------------------------------------------------
+// As for ParaView's Volume it does not depend on the data's size, which LOD Threshold is of.
+int vtkIsosurfaceBlocksMapper::FindReduction(vtkRenderWindow* window)
+{
+  const int wanted = this->MovingReductionFactor;
+  if (wanted <= 1 || IsStill(window))
+  {
+    return 1;
+  }
+  double milliseconds = 0.0; // of the last image, at full resolution
+  for (const auto& mapper : this->Drawn)
+  {
+    const int pixelsPerRay = mapper->GetImageReductionFactor() * mapper->GetImageReductionFactor();
+    milliseconds += mapper->GetStatistics()->GetTotalMilliseconds() * pixelsPerRay;
+  }
+  const double allowed = 1e3 * this->Settings->GetTimeAllowance();
+  int factor = milliseconds > allowed ? wanted : 1;
+  while (factor < 2 * wanted && milliseconds > allowed * factor * factor)
+  {
+    ++factor;
+  }
+  return factor;
 }
 
 //------------------------------------------------------------------------------

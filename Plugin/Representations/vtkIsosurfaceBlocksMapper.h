@@ -40,6 +40,11 @@ public:
   /// isovalue is.
   const Mappers& GetMappers() const { return this->Drawn; }
 
+  /// Side of the squares of pixels that share a ray while the camera moves, where an image of full
+  /// resolution would take longer than the settings' TimeAllowance; up to twice as long where the
+  /// last one took too long, too. 1: there are no such images.
+  void SetMovingReductionFactor(int factor) { this->MovingReductionFactor = factor; }
+
   /// Prepares the inputs of the blocks that the next render draws with a property; false: one of
   /// them cannot be drawn.
   bool UpdateInputs(vtkVolumeProperty* property);
@@ -76,6 +81,7 @@ private:
   /// The time of a render, for all blocks. A still one is completed at once but in ParaView's own
   /// window: a Python program's may have no event loop, which would go on with it.
   double FindTime(vtkRenderWindow* window);
+  int FindReduction(vtkRenderWindow* window);
   std::vector<std::size_t> FindOrder(vtkRenderer* renderer, vtkVolume* volume);
   /// Called for an error or a warning of a block's mapper, with VTK's text of it.
   void Keep(vtkObject* mapper, unsigned long event, void* text);
@@ -86,6 +92,7 @@ private:
   vtkNew<vtkProgressiveIsosurfaceMapper> Settings;
   Mappers All;   ///< one for each block
   Mappers Drawn; ///< of these, those in whose range an isovalue is
+  int MovingReductionFactor = 1;
   Message Error, Warning;
   std::size_t NumberOfComplete = 0; ///< blocks that the last render could draw
 

@@ -32,7 +32,6 @@
 #include "vtkPolyDataMapper.h"
 #include "vtkProcessModule.h"
 #include "vtkProgressiveIsosurfaceMapper.h"
-#include "vtkProgressiveIsosurfaceStatistics.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUniformGridAMR.h"
 #include "vtkVolumeProperty.h"
@@ -61,6 +60,15 @@ void TransformBounds(const double bounds[6], vtkMatrix4x4* matrix, double transf
   }
   vtkMath::UninitializeBounds(transformed);
   box.GetBounds(transformed);
+}
+
+// Does ParaView reduce images itself while the camera moves?
+bool IsReducedByParaView()
+{
+  const int process = vtkProcessModule::GetProcessType();
+  return process == vtkProcessModule::PROCESS_SERVER ||
+    process == vtkProcessModule::PROCESS_RENDER_SERVER ||
+    DistributedPieces::GetNumberOfProcesses() > 1;
 }
 
 Message Join(const Message& first, const Message& second)
@@ -129,9 +137,9 @@ int vtkProgressiveIsosurfaceRepresentation::ProcessViewRequest(
   else if (requestType == vtkPVView::REQUEST_RENDER())
   {
     auto* view = vtkPVRenderView::SafeDownCast(inInfo->Get(vtkPVView::VIEW()));
-    const bool reduced = view && inInfo->Has(vtkPVRenderView::USE_LOD());
-    this->GetIsosurfaceMapper()->SetImageReductionFactor(
-      reduced ? this->FindReduction(view->GetInteractiveRenderImageReductionFactor()) : 1);
+    const bool reduces = view && !IsReducedByParaView();
+    this->GetBlocksMapper()->SetMovingReductionFactor(
+      reduces ? view->GetInteractiveRenderImageReductionFactor() : 1);
     if (DistributedPieces::GetNumberOfProcesses() > 1)
     {
       // What one process cannot draw is drawn by none, as if it were one: no half of a surface
@@ -151,31 +159,6 @@ void vtkProgressiveIsosurfaceRepresentation::ShowProgress(
   this->SetProgressText(
     compresses ? "Compressing for Progressive Isosurface" : "Loading Progressive Isosurface");
   this->UpdateProgress(*static_cast<double*>(fraction));
-}
-
-//------------------------------------------------------------------------------
-int vtkProgressiveIsosurfaceRepresentation::FindReduction(int wanted)
-{
-  const int process = vtkProcessModule::GetProcessType();
-  const bool remote = process == vtkProcessModule::PROCESS_SERVER ||
-    process == vtkProcessModule::PROCESS_RENDER_SERVER;
-  if (wanted <= 1 || remote || DistributedPieces::GetNumberOfProcesses() > 1)
-  {
-    return 1; // ParaView reduces the whole image
-  }
-  double milliseconds = 0.0;
-  for (const auto& mapper : this->GetBlocksMapper()->GetMappers())
-  {
-    const int pixelsPerRay = mapper->GetImageReductionFactor() * mapper->GetImageReductionFactor();
-    milliseconds += mapper->GetStatistics()->GetTotalMilliseconds() * pixelsPerRay;
-  }
-  const double allowed = 1e3 * this->GetIsosurfaceMapper()->GetTimeAllowance();
-  int factor = milliseconds > allowed ? wanted : 1;
-  while (factor < 2 * wanted && milliseconds > allowed * factor * factor)
-  {
-    ++factor;
-  }
-  return factor;
 }
 
 //------------------------------------------------------------------------------

@@ -194,11 +194,6 @@ private:
   /// Tells ParaView how much of a plain image is compressed, and of what a first image takes done.
   void ShowProgress(vtkObject* caller, unsigned long event, void* fraction);
 
-  /// Finds the side of the squares of pixels that share a ray while the camera moves: as wanted, up
-  /// to twice as long where the last image took too long, and 1 where one of full resolution would
-  /// not, or ParaView reduces the image.
-  int FindReduction(int wanted);
-
   /// The array that was chosen to colour by; without a name: none.
   ArraySelection GetColorArray();
 

@@ -61,7 +61,7 @@ def arrange():
     while not isinstance(area, QtWidgets.QScrollArea):
         area = area.parentWidget()
     area.ensureWidgetVisible(widget)
-    view.LODThreshold = 1000.0  # the interactive image has all rays
+    view.ImageReductionFactor = 1  # the interactive image has all rays
     display.MemoryBudget = 36  # too little for the whole volume, so that there are passes to see
     view.SMProxy.AddObserver("EndEvent", look_at_progress)
     # from here on the window's event loop makes the images: an interactive one, then whatever the

@@ -3,6 +3,7 @@
 import session
 
 view = session.start(size=[640, 480])
+view.ImageReductionFactor = 1  # interactive images have all rays
 wavelet = session.make_wavelet(48)
 display = session.show_isosurface(wavelet, view, Isovalues=[150.0])
 session.look(view)
