@@ -95,6 +95,12 @@ void vtkPVCompressedImageWriter::SetMaskNonFinite(bool on)
 }
 
 //------------------------------------------------------------------------------
+void vtkPVCompressedImageWriter::SetLevels(int levels)
+{
+  this->Compressor->SetLevels(levels);
+}
+
+//------------------------------------------------------------------------------
 int vtkPVCompressedImageWriter::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");

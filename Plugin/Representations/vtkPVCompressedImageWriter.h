@@ -51,6 +51,7 @@ public:
   void SetTolerance(double tolerance);
   void SetComponent(int component);
   void SetMaskNonFinite(bool on);
+  void SetLevels(int levels);
   ///@}
 
 protected:

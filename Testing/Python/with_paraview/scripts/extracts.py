@@ -43,6 +43,17 @@ exact = servermanager.Fetch(wavelet).GetPointData().GetArray("RTData")
 assert max(abs(exact.GetValue(i) - value) for i, value in enumerate(within)) <= 0.5
 extractor.Writer.Tolerance = 0
 
+# with levels of detail, where a volume is large enough for any
+long = simple.Wavelet(WholeExtent=[-40, 40, -4, 4, -4, 4])
+other = simple.CreateExtractor("ZFP", long, registrationName="ZFP3")
+other.Writer.Levels = 2
+other.Writer.FileName = "levels_{timestep:04d}.vti"
+simple.SaveExtracts(ExtractsOutputDirectory=str(OUT / "levels"))
+packed = simple.OpenDataFile(str(OUT / "levels" / "levels_0000.vti"))
+level = servermanager.Fetch(simple.ZFPDecompress(Input=packed, Level=1))
+assert level.GetDimensions() == (41, 5, 5), level.GetDimensions()
+simple.Delete(other)
+
 # what cannot be written is told once a file, by what the panel calls it
 extractor.Writer.FileName = "volume_{timestep:04d}.vtk"
 with session.messages() as listener:
