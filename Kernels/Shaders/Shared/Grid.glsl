@@ -89,17 +89,24 @@ ivec3 SideOffset(int i)
   return ivec3(i) >> ivec3(0, 1, 2) & 1;
 }
 
-// The lowest value of a block, decoded from 8 bits: steps within its macrocell's range.
+// A step of the 8 bits in which a block's range is told within its macrocell's. Sums and products of
+// floats are the same everywhere, quotients are not: the last of the 256 steps is a little longer.
+float RangeUnit(vec2 macrocellRange)
+{
+  precise float unit = macrocellRange.y * (1.0 / 256.0) - macrocellRange.x * (1.0 / 256.0);
+  return unit;
+}
+
+// The lowest value of a block, decoded from 8 bits. Ranges too small or large for steps have only
+// the first and the last: see BlockRanges.comp.
 float RangeLow(vec2 macrocellRange, uint steps)
 {
-  precise float unit = macrocellRange.y / 255.0 - macrocellRange.x / 255.0;
-  precise float low = macrocellRange.x + float(steps) * unit;
+  precise float low = macrocellRange.x + float(steps) * RangeUnit(macrocellRange);
   return steps == 0u ? macrocellRange.x : low;
 }
 
 float RangeHigh(vec2 macrocellRange, uint steps)
 {
-  precise float unit = macrocellRange.y / 255.0 - macrocellRange.x / 255.0;
-  precise float high = macrocellRange.x + float(steps) * unit;
-  return steps == 255u ? macrocellRange.y : high;
+  precise float high = macrocellRange.x + float(steps) * RangeUnit(macrocellRange);
+  return steps == 0u ? macrocellRange.x : steps == 255u ? macrocellRange.y : high;
 }

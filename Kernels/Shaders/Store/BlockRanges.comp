@@ -2,7 +2,9 @@
 // the volume where it is decoded whole. A work group takes the blocks of a macrocell and their
 // neighbours, because a block's cells need 5^3 samples (its dual grid). It stores the range of
 // values of each block's cells in 8 + 8 bits: steps within the macrocell's exact range, rounded
-// outwards. Samples of hidden cells do not count.
+// outwards. Samples of hidden cells do not count. What compression stores of the same blocks
+// (RangeSteps.cxx, BlockRangeFinder.cxx) has the same bits, whatever the GPU does with subnormal
+// numbers and signs of zero: samples are compared as integers, in the order of floats.
 
 // Its loops are too short to be worth the seconds that NVIDIA's compiler takes to unroll them.
 #pragma optionNV(unroll none)
@@ -19,8 +21,33 @@
 const int GRID = BLOCK_SIDE * MACROCELL_SIDE + 1; // samples of a macrocell's cells on an axis
 const uint LOADED_SIDE = uint(MACROCELL_SIDE) + 1u; // blocks on an axis that hold them
 
-shared float samples[GRID * GRID * GRID];
-shared vec2 localRanges[BLOCKS_PER_MACROCELL];
+// Keys of infinity and minus infinity: no sample is beyond.
+const int KEY_OF_INFINITY = 0x7F800000;
+const ivec2 EMPTY_RANGE = ivec2(KEY_OF_INFINITY, -KEY_OF_INFINITY - 1);
+
+// Steps are no shorter than this: the numbers between them are exact in floats that are not
+// subnormal.
+const uint LEAST_UNIT = (127u - 100u) << 23; // the float 2^-100
+
+shared int samples[GRID * GRID * GRID]; // keys, and so are ranges
+shared ivec2 localRanges[BLOCKS_PER_MACROCELL];
+
+// Integers in the order of the floats with these bits; the same function takes them back.
+ivec4 KeysOf(ivec4 bits)
+{
+  return bits ^ (bits >> 31 & 0x7FFFFFFF);
+}
+
+int KeyOf(float value)
+{
+  int bits = floatBitsToInt(value);
+  return bits ^ (bits >> 31 & 0x7FFFFFFF);
+}
+
+float ValueOf(int key)
+{
+  return intBitsToFloat(key ^ (key >> 31 & 0x7FFFFFFF));
+}
 
 // Stores those samples of a block's row y + 4 z that the macrocell's cells need.
 void StoreRow(ivec3 local, int row, uvec4 bits)
@@ -28,14 +55,14 @@ void StoreRow(ivec3 local, int row, uvec4 bits)
   ivec3 at = BLOCK_SIDE * local + ivec3(0, row % BLOCK_SIDE, row / BLOCK_SIDE);
   if (at.y < GRID && at.z < GRID)
   {
-    vec4 values = uintBitsToFloat(bits);
+    ivec4 keys = KeysOf(ivec4(bits));
     uint first = at.x + GRID * (at.y + GRID * at.z);
-    samples[first] = values.x;
+    samples[first] = keys.x;
     if (at.x + 3 < GRID)
     {
-      samples[first + 1u] = values.y;
-      samples[first + 2u] = values.z;
-      samples[first + 3u] = values.w;
+      samples[first + 1u] = keys.y;
+      samples[first + 2u] = keys.z;
+      samples[first + 3u] = keys.w;
     }
   }
 }
@@ -62,15 +89,15 @@ void LoadSamples(ivec3 firstBlock)
 }
 
 // Extends a range (low, high) by a sample.
-void Extend(inout vec2 range, ivec3 at)
+void Extend(inout ivec2 range, ivec3 at)
 {
-  float value = samples[at.x + GRID * (at.y + GRID * at.z)];
-  range = vec2(min(range.x, value), max(range.y, value));
+  int key = samples[at.x + GRID * (at.y + GRID * at.z)];
+  range = ivec2(min(range.x, key), max(range.y, key));
 }
 
 #ifdef HAS_HIDDEN_CELLS
 // The range of the corners of a block's cells that are not hidden; it has `count` cells per axis.
-vec2 VisibleRange(vec2 range, uvec2 hidden, ivec3 local, ivec3 count)
+ivec2 VisibleRange(ivec2 range, uvec2 hidden, ivec3 local, ivec3 count)
 {
   for (int i = 0; i < SAMPLES_PER_BLOCK; ++i)
   {
@@ -89,9 +116,9 @@ vec2 VisibleRange(vec2 range, uvec2 hidden, ivec3 local, ivec3 count)
 #endif
 
 // The range of a block's dual grid; empty (low > high) if the block has no visible cells.
-vec2 DualGridRange(ivec3 firstBlock, ivec3 local)
+ivec2 DualGridRange(ivec3 firstBlock, ivec3 local)
 {
-  vec2 range = vec2(uintBitsToFloat(0x7F800000u), -uintBitsToFloat(0x7F800000u));
+  ivec2 range = EMPTY_RANGE;
   ivec3 first = BLOCK_SIDE * (firstBlock + local);
   ivec3 last = min(first + BLOCK_SIDE, volume.Samples - 1);
   if (any(greaterThanEqual(first, last)))
@@ -119,29 +146,24 @@ vec2 DualGridRange(ivec3 firstBlock, ivec3 local)
   return range;
 }
 
-// Encodes a range in 8 + 8 bits: steps within the macrocell's range, rounded outwards. An empty one
-// becomes low 255, high 0.
-uint Quantize(vec2 range, vec2 whole)
+// Encodes a range in 8 + 8 bits: the narrowest steps within the macrocell's range that hold it. An
+// empty one becomes low 255, high 0.
+uint Quantize(ivec2 range, vec2 whole)
 {
   if (range.x > range.y)
   {
     return 255u;
   }
-  float unit = whole.y / 255.0 - whole.x / 255.0;
+  float unit = RangeUnit(whole);
   uint low = 0u;
   uint high = 255u;
-  if (unit > 0.0 && !isinf(unit)) // a damaged stream may have infinite values
+  if (unit >= uintBitsToFloat(LEAST_UNIT) && !isinf(unit)) // a damaged stream has infinite values
   {
-    low = uint(clamp((range.x / unit - whole.x / unit), 0.0, 255.0));
-    high = min(uint(clamp(ceil(range.y / unit - whole.x / unit), 0.0, 255.0)), 255u);
-  }
-  while (low > 0u && RangeLow(whole, low) > range.x)
-  {
-    --low;
-  }
-  while (high < 255u && RangeHigh(whole, high) < range.y)
-  {
-    ++high;
+    for (uint steps = 128u; steps > 0u; steps >>= 1)
+    {
+      low += KeyOf(RangeLow(whole, low + steps)) <= range.x ? steps : 0u;
+      high -= KeyOf(RangeHigh(whole, high - steps)) >= range.y ? steps : 0u;
+    }
   }
   return low | (high << 8);
 }
@@ -150,11 +172,12 @@ uint Quantize(vec2 range, vec2 whole)
 void StoreRanges(uint macrocell)
 {
   uint lane = gl_LocalInvocationIndex;
-  vec2 whole = localRanges[0];
-  for (uint i = 1u; i < uint(BLOCKS_PER_MACROCELL); ++i)
+  ivec2 keys = EMPTY_RANGE;
+  for (uint i = 0u; i < uint(BLOCKS_PER_MACROCELL); ++i)
   {
-    whole = vec2(min(whole.x, localRanges[i].x), max(whole.y, localRanges[i].y));
+    keys = ivec2(min(keys.x, localRanges[i].x), max(keys.y, localRanges[i].y));
   }
+  vec2 whole = vec2(ValueOf(keys.x), ValueOf(keys.y));
   uint even = Quantize(localRanges[2u * lane], whole);
   uint odd = Quantize(localRanges[2u * lane + 1u], whole);
   macrocells[macrocell].Ranges[lane] = even | odd << 16;
