@@ -4,6 +4,7 @@
 
 #include "Codec/BitCopy.h"
 #include "Codec/BlockGeometry.h"
+#include "Codec/BlockRangeFinder.h"
 #include "Codec/BlockStream.h"
 #include "Codec/MacrocellErrors.h"
 #include "Codec/SampleSummary.h"
@@ -95,6 +96,7 @@ void vtkCompressedVolume::Clear()
   this->LargestError = this->MeanError = -1.0;
   this->MacrocellErrors = nullptr;
   this->Stream = nullptr;
+  this->Ranges = vtkBlockRanges();
   this->HasChecksums = false;
   std::fill_n(this->Steps, 3, 1);
   this->LargestDistance = -1.0;
@@ -291,6 +293,7 @@ void vtkCompressedVolume::SetHiddenSamples(const vtkBlockMask& mask)
 {
   if (!(this->HiddenSamples == mask))
   {
+    this->Ranges = vtkBlockRanges();
     this->HiddenSamples = mask;
     this->Modified();
   }
@@ -301,6 +304,7 @@ void vtkCompressedVolume::SetHiddenCells(const vtkBlockMask& mask)
 {
   if (!(this->HiddenCells == mask))
   {
+    this->Ranges = vtkBlockRanges();
     this->HiddenCells = mask;
     this->Modified();
   }
@@ -377,6 +381,7 @@ void vtkCompressedVolume::SetStream(vtkUnsignedCharArray* stream)
 {
   if (this->Stream != stream)
   {
+    this->Ranges = vtkBlockRanges();
     this->Stream = stream;
     this->Modified();
   }
@@ -399,6 +404,48 @@ void vtkCompressedVolume::AddLevel(vtkCompressedVolume* volume)
   volume->SetAssociation(this->Association);
   this->Levels.push_back(volume);
   this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkCompressedVolume::SetRanges(const vtkBlockRanges& ranges)
+{
+  this->Ranges = ranges;
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+bool vtkCompressedVolume::FindRanges()
+{
+  const auto stream = BlockStream::Align(this->Stream);
+  const BlockStream blocks(this->Dimensions, this->BlockBits, stream->GetPointer(0), 0);
+  BlockRangeFinder finder(blocks);
+  if (!finder.Allocate())
+  {
+    return false;
+  }
+  SampleSummary unused;
+  finder.AddAll(blocks, unused, [](double) { return true; });
+  this->SetRanges(finder.Finish(blocks, this->GetCellsWithoutSurface()));
+  return true;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkCompressedVolume::CheckRanges()
+{
+  const vtkBlockRanges stored = this->Ranges;
+  if (stored.IsEmpty())
+  {
+    return {};
+  }
+  const bool isFound = this->FindRanges();
+  const bool areSame = this->Ranges == stored;
+  this->SetRanges(stored);
+  if (!isFound)
+  {
+    return "cannot be checked: there is not enough memory for those that its blocks decode to";
+  }
+  return areSame ? std::string()
+                 : "are wrong: its blocks decode to others";
 }
 
 //------------------------------------------------------------------------------
@@ -440,6 +487,7 @@ void vtkCompressedVolume::PrintSelf(ostream& os, vtkIndent indent)
      << " data\n";
   os << indent << "HiddenSamples: " << this->HiddenSamples.GetRuns().size() << " runs\n";
   os << indent << "HiddenCells: " << this->HiddenCells.GetRuns().size() << " runs\n";
+  os << indent << "Ranges: " << this->Ranges.GetBytes() << " bytes\n";
   os << indent << "Stream: ";
   this->Stream ? os << this->Stream->GetNumberOfValues() << " bytes\n" : os << "(none)\n";
   os << indent << "HasChecksums: " << (this->HasChecksums ? "yes\n" : "no\n");

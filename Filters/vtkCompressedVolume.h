@@ -28,6 +28,13 @@
  * - ProgIso.ZFP.Error (2 doubles, optional): largest and mean error that encoding left
  * - ProgIso.ZFP.MacrocellErrors (triples of floats, optional): smallest and largest sample, and
  *   largest error, of every macrocell of 16x16x16 samples, x fastest, in the stream's units
+ * - ProgIso.ZFP.Ranges (unsigned 64-bit integers), ProgIso.ZFP.RangesDirectory (four unsigned
+ *   32-bit integers for each page of 64x64x64 samples), optional: the range of values of every
+ *   block, see vtkBlockRanges
+ * - ProgIso.ZFP.RangesOf (unsigned 32-bit integer): the CRC-32, as that of the metadata, of
+ *   BlockBits, Dimensions, HiddenCells, HiddenSamples and PageChecksums, as far as they are there:
+ *   of the stream that these ranges belong to. They are not used with another, such as an older
+ *   version, which does not know them, may have put in its place.
  * - ProgIso.ZFP.PageChecksums (unsigned 32-bit integers): zlib's CRC-32 of every page of 65536
  * bytes of the stream, the last of which may be shorter; a part of a volume is checked by the pages
  * that hold its blocks
@@ -81,6 +88,7 @@
 #define vtkCompressedVolume_h
 
 #include "vtkBlockMask.h"
+#include "vtkBlockRanges.h"
 #include "vtkObject.h"
 #include "vtkProgIsoFiltersModule.h" // for export macro
 #include "vtkSmartPointer.h"         // for the stream
@@ -346,6 +354,32 @@ public:
 
   ///@{
   /**
+   * The ranges of values of the stream's blocks, without what is hidden; empty if they are not
+   * known, as of volumes that older versions wrote, and of parts of others. SetRanges() comes after
+   * all else: another stream, and other masks, take them away.
+   */
+  const vtkBlockRanges& GetRanges() const { return this->Ranges; }
+  void SetRanges(const vtkBlockRanges& ranges);
+  void ClearRanges() { this->SetRanges(vtkBlockRanges()); }
+  bool HasRanges() const { return !this->Ranges.IsEmpty(); }
+  vtkTypeInt64 GetRangeBytes() const { return this->Ranges.GetBytes(); }
+  ///@}
+
+  /**
+   * Decodes all blocks of the stream to find the ranges of their values anew. False where there is
+   * no memory for them.
+   */
+  bool FindRanges();
+
+  /**
+   * Decodes all blocks of the stream to compare their ranges of values with those that are known.
+   * Returns what is wrong as the end of a sentence that begins with "the ranges"; empty if nothing
+   * is, or if no ranges are known.
+   */
+  std::string CheckRanges();
+
+  ///@{
+  /**
    * The stream; null before a successful Read(). At least StreamBytesFor() bytes.
    */
   vtkUnsignedCharArray* GetStream() const;
@@ -419,6 +453,7 @@ private:
   double MeanError = -1.0;
   vtkSmartPointer<vtkFloatArray> MacrocellErrors;
   vtkSmartPointer<vtkUnsignedCharArray> Stream;
+  vtkBlockRanges Ranges;
   bool HasChecksums = false;
   int Steps[3] = { 1, 1, 1 };
   double LargestDistance = -1.0;

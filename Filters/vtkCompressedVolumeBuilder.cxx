@@ -11,6 +11,7 @@
 #include "Format/StreamArray.h"
 #include "Status.h"
 
+#include "vtkBlockRanges.h"
 #include "vtkCellData.h"
 #include "vtkCompressedVolume.h"
 #include "vtkDataArray.h"
@@ -34,6 +35,11 @@ struct vtkCompressedVolumeBuilder::Work
     : BlockBits(blockBits)
   {
     std::copy_n(dims, 3, this->Dimensions);
+  }
+
+  BlockStream GetBlocks(int threads)
+  {
+    return { this->Dimensions, this->BlockBits, this->Stream->GetPointer(0), threads };
   }
 
   vtkTypeInt64 SamplesPerSlice() const
@@ -107,7 +113,7 @@ Status vtkCompressedVolumeBuilder::Work::AddSlab(const ChosenSamples& samples, i
   }
   const int end =
     this->Slices + static_cast<int>(array->GetNumberOfTuples() / this->SamplesPerSlice());
-  BlockStream blocks(this->Dimensions, this->BlockBits, this->Stream->GetPointer(0), threads);
+  BlockStream blocks = this->GetBlocks(threads);
   this->Encoder.EncodeSlabs(blocks, this->Slices / BlockSide, BlocksAlong(end), array,
     samples.Component, [](double) { return true; });
   const SampleSummary& summary = this->Encoder.GetSummary();
@@ -190,6 +196,10 @@ bool vtkCompressedVolumeBuilder::Start(const int dims[3], double rate)
   this->Volume = std::make_unique<Work>(dims, blockBits);
   const vtkTypeInt64 bytes = vtkCompressedVolume::StreamBytesFor(dims, blockBits);
   status = AllocateArray(this->Volume->Stream.Get(), bytes, "the stream", dims);
+  if (status)
+  {
+    status = this->Volume->Encoder.Allocate(this->Volume->GetBlocks(this->NumberOfThreads));
+  }
   if (status && this->Levels > 0)
   {
     this->Volume->Levels = std::make_unique<Pyramid>(dims, this->NumberOfThreads);
@@ -272,6 +282,8 @@ bool vtkCompressedVolumeBuilder::Finish(vtkImageData* image)
   volume->SetArrayName(name.empty() ? "scalars" : name);
   volume->SetComponent(work->Component);
   volume->SetStream(work->Stream);
+  volume->SetRanges(work->Encoder.GetRanges().Finish(
+    work->GetBlocks(this->NumberOfThreads), volume->GetCellsWithoutSurface()));
   if (work->Levels)
   {
     for (const auto& level : work->Levels->Finish())

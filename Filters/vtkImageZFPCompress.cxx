@@ -15,6 +15,7 @@
 #include "Pieces/PipelineRequests.h"
 #include "Status.h"
 
+#include "vtkBlockRanges.h"
 #include "vtkCellData.h"
 #include "vtkCompressedVolume.h"
 #include "vtkDataArray.h"
@@ -347,6 +348,10 @@ Status vtkImageZFPCompress::Work::Compress(const CompressedPart& part, vtkImageD
     return Status::Error("There is ", status.GetMessage(), ".");
   }
   BlockStream blocks(dims, blockBits, stream->GetPointer(0), this->Self->NumberOfThreads);
+  if (Status status = encoder.Allocate(blocks); !status)
+  {
+    return Status::Error("There is ", status.GetMessage(), ".");
+  }
   if (!encoder.EncodeSlabs(blocks, 0, blocks.GetNumberOfSlabs(), samples.Array, samples.Component,
         this->ProgressFrom(0.0, this->Self->Levels > 0 ? StreamPart : 1.0)))
   {
@@ -376,6 +381,7 @@ Status vtkImageZFPCompress::Work::Compress(const CompressedPart& part, vtkImageD
   volume->SetExtent(part.Covered[0], part.Covered[1], part.Covered[2], part.Covered[3],
     part.Covered[4], part.Covered[5]);
   volume->SetStream(stream);
+  volume->SetRanges(encoder.GetRanges().Finish(blocks, volume->GetCellsWithoutSurface()));
   if (Status status = this->MakeLevels(samples, encoder, volume); !status)
   {
     return status;

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkZFPReader.h"
 
+#include "Codec/BlockRangeFinder.h"
 #include "Codec/BlockStream.h"
 #include "Codec/SampleSummary.h"
 #include "Format/StreamArray.h"
 #include "Format/ZFPFile.h"
 #include "Status.h"
 
+#include "vtkBlockRanges.h"
 #include "vtkCompressedVolume.h"
 #include "vtkErrorCode.h"
 #include "vtkImageData.h"
@@ -24,13 +26,18 @@ vtkStandardNewMacro(vtkZFPReader);
 namespace
 {
 //------------------------------------------------------------------------------
-// Decodes all blocks to find the range of values, which zfp files do not hold.
-Status FindRange(const ZFPFile& file, vtkUnsignedCharArray* stream,
-  const ProgressCallback& progress, double range[2])
+// Decodes all blocks to find the ranges of their values, which zfp files do not hold.
+Status FindRanges(const ZFPFile& file, vtkUnsignedCharArray* stream,
+  const ProgressCallback& progress, double range[2], vtkBlockRanges& ofBlocks)
 {
   const BlockStream blocks(file.GetDimensions(), file.GetBlockBits(), stream->GetPointer(0), 0);
+  BlockRangeFinder finder(blocks);
+  if (Status status = finder.Allocate(); !status)
+  {
+    return status.WithPrefix("cannot be read: there is ");
+  }
   SampleSummary summary;
-  if (!blocks.Summarize(summary, progress))
+  if (!finder.AddAll(blocks, summary, progress))
   {
     return Status::Aborted();
   }
@@ -41,6 +48,7 @@ Status FindRange(const ZFPFile& file, vtkUnsignedCharArray* stream,
   }
   range[0] = summary.Minimum;
   range[1] = summary.Maximum;
+  ofBlocks = finder.Finish(blocks, vtkBlockMask());
   return {};
 }
 
@@ -54,7 +62,8 @@ Status ReadVolume(
     return status;
   }
   double range[2];
-  if (Status status = FindRange(file, stream, progress, range); !status)
+  vtkBlockRanges ranges;
+  if (Status status = FindRanges(file, stream, progress, range, ranges); !status)
   {
     return status;
   }
@@ -64,6 +73,7 @@ Status ReadVolume(
   volume->SetRange(range);
   volume->SetScalarType(VTK_FLOAT);
   volume->SetStream(stream);
+  volume->SetRanges(ranges);
   return {};
 }
 }

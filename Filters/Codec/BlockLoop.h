@@ -67,6 +67,32 @@ enum class StreamAccess
   Write
 };
 
+/**
+ * Calls body(slabs, progress of these) for some slabs after the other, so many at a time that what
+ * is kept of each block of a part is small beside a volume, and the threads' waiting for one
+ * another at its end beside the work. Returns false when stopped.
+ */
+template <typename Body>
+bool ForEachPart(
+  const BlockStream& blocks, SlabRange slabs, const ProgressCallback& progress, const Body& body)
+{
+  constexpr vtkTypeInt64 BlocksPerPart = 1 << 20;
+  const double all = static_cast<double>(slabs.Last - slabs.First);
+  const vtkTypeInt64 step = std::max<vtkTypeInt64>(BlocksPerPart / blocks.GetBlocksPerSlab(), 1);
+  for (SlabRange part = { slabs.First, slabs.First }; part.First < slabs.Last;
+       part.First = part.Last)
+  {
+    part.Last = std::min(part.First + step, slabs.Last);
+    const double before = static_cast<double>(part.First - slabs.First) / all;
+    const double share = static_cast<double>(part.Last - part.First) / all;
+    if (!body(part, [&](double fraction) { return progress(before + share * fraction); }))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
 /// Calls the body of ForEachBlock() for the blocks [first, last).
 template <typename Body>
 void VisitBlocks(const BlockStream& blocks, vtkTypeInt64 first, vtkTypeInt64 last,

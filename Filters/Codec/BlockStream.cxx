@@ -128,20 +128,26 @@ bool BlockStream::Summarize(SampleSummary& summary, const ProgressCallback& prog
     {
       float samples[BlockSamples];
       zfp_decode_block_float_3(stream, samples);
-      if (block.IsWhole())
-      {
-        mine.AddBlock(samples);
-        return;
-      }
-      for (int z = 0; z < block.Size[2]; ++z)
-      {
-        for (int y = 0; y < block.Size[1]; ++y)
-        {
-          for (int x = 0; x < block.Size[0]; ++x)
-          {
-            mine.Add(samples[BlockSlice * z + BlockSide * y + x]);
-          }
-        }
-      }
+      AddTo(mine, block, samples);
     });
+}
+
+//------------------------------------------------------------------------------
+void BlockStream::AddTo(SampleSummary& summary, const Block& block, const float samples[])
+{
+  if (block.IsWhole())
+  {
+    summary.AddBlock(samples);
+    return;
+  }
+  for (int z = 0; z < block.Size[2]; ++z)
+  {
+    for (int y = 0; y < block.Size[1]; ++y)
+    {
+      for (int x = 0; x < block.Size[0]; ++x)
+      {
+        summary.Add(samples[BlockSlice * z + BlockSide * y + x]);
+      }
+    }
+  }
 }

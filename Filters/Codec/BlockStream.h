@@ -73,6 +73,11 @@ public:
    */
   bool Summarize(SampleSummary& summary, const ProgressCallback& progress) const;
 
+  /**
+   * Adds a decoded block's samples to a summary, without zfp's padding.
+   */
+  static void AddTo(SampleSummary& summary, const Block& block, const float samples[BlockSamples]);
+
 private:
   void FindSamples(Block& block) const;
 

@@ -10,6 +10,7 @@
 #include "Codec/SliceLoop.h"
 
 #include "vtkArrayDispatch.h"
+#include "vtkBlockRanges.h"
 #include "vtkCompressedVolume.h"
 #include "vtkDataArray.h"
 #include "vtkDataArrayRange.h"
@@ -78,7 +79,7 @@ public:
 
   Status Allocate();
   std::vector<LevelSlice> Add(std::vector<LevelSlice> slices);
-  vtkSmartPointer<vtkCompressedVolume> MakeVolume(const SampleUnits& units) const;
+  vtkSmartPointer<vtkCompressedVolume> MakeVolume(const SampleUnits& units);
 
   LevelFilter Filter;
 
@@ -86,6 +87,11 @@ private:
   std::size_t SliceSize() const
   {
     return static_cast<std::size_t>(this->Shape.Dimensions[0]) * this->Shape.Dimensions[1];
+  }
+
+  BlockStream GetBlocks()
+  {
+    return { this->Shape.Dimensions, this->BlockBits, this->Stream->GetPointer(0), this->Threads };
   }
 
   void Encode(const LevelSlice& slice);
@@ -114,7 +120,11 @@ Status Pyramid::Level::Allocate()
   const vtkTypeInt64 slices = SamplesToEncode / static_cast<vtkTypeInt64>(this->SliceSize());
   this->Capacity = BlockSide *
     static_cast<int>(std::clamp<vtkTypeInt64>(slices / BlockSide, 1, BlocksAlong(dims[2])));
-  const Status status = AllocateArray(this->Stream.Get(), bytes, "a level", dims);
+  Status status = AllocateArray(this->Stream.Get(), bytes, "a level", dims);
+  if (status)
+  {
+    status = this->Encoder.Allocate(this->GetBlocks());
+  }
   return status
     ? AllocateArray(this->Kept.Get(), static_cast<vtkTypeInt64>(this->Capacity * this->SliceSize()),
         "slices of a level", dims)
@@ -159,8 +169,7 @@ void Pyramid::Level::Encode(const LevelSlice& slice)
 void Pyramid::Level::EncodeSlabs()
 {
   const int slabs = BlocksAlong(this->InKept);
-  BlockStream blocks(
-    this->Shape.Dimensions, this->BlockBits, this->Stream->GetPointer(0), this->Threads);
+  BlockStream blocks = this->GetBlocks();
   this->Encoder.Hidden.Flags = this->Hidden.empty() ? nullptr : this->Hidden.data();
   this->Encoder.Hidden.HidingFlags = 0xff;
   this->Encoder.EncodeSlabs(
@@ -203,7 +212,7 @@ void Pyramid::Level::AppendHiddenCells()
 }
 
 //------------------------------------------------------------------------------
-vtkSmartPointer<vtkCompressedVolume> Pyramid::Level::MakeVolume(const SampleUnits& units) const
+vtkSmartPointer<vtkCompressedVolume> Pyramid::Level::MakeVolume(const SampleUnits& units)
 {
   const SampleSummary& summary = this->Encoder.GetSummary();
   auto volume = vtkSmartPointer<vtkCompressedVolume>::New();
@@ -218,6 +227,8 @@ vtkSmartPointer<vtkCompressedVolume> Pyramid::Level::MakeVolume(const SampleUnit
   volume->SetHiddenSamples(this->Encoder.GetMask());
   volume->SetHiddenCells(this->CellMask);
   volume->SetStream(this->Stream);
+  volume->SetRanges(
+    this->Encoder.GetRanges().Finish(this->GetBlocks(), volume->GetCellsWithoutSurface()));
   return volume;
 }
 

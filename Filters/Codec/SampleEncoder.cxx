@@ -22,19 +22,20 @@ template <typename ArrayT>
 class ArrayEncoder
 {
 public:
-  // `masks` has room for the hidden samples of every block from slab `first` on, or is empty if no
-  // sample may be hidden.
-  ArrayEncoder(const BlockStream& blocks, vtkTypeInt64 first, ArrayT* array, int component,
-    const SampleUnits& units, const HiddenSamples& hidden, std::vector<vtkTypeUInt64>& masks,
-    MacrocellErrors& errors)
+  // The array begins with slab `first`. `masks` has room for the hidden samples of every block from
+  // slab `firstMask` on, or is empty if no sample may be hidden.
+  ArrayEncoder(const BlockStream& blocks, vtkTypeInt64 first, vtkTypeInt64 firstMask, ArrayT* array,
+    int component, const SampleUnits& units, const HiddenSamples& hidden,
+    std::vector<vtkTypeUInt64>& masks, MacrocellErrors& errors, BlockRangeFinder& ranges)
     : Gatherer(blocks.GetDimensions(), first, array, component, units, hidden)
     , BlockBits(blocks.GetBlockBits())
-    , FirstBlock(first * blocks.GetBlocksPerSlab())
+    , FirstBlock(firstMask * blocks.GetBlocksPerSlab())
     , BlocksAlongX(blocks.GetBlocks()[0])
     , BlocksPerSlab(blocks.GetBlocksPerSlab())
     , Scale(units.Scale)
     , Masks(masks)
     , Errors(errors)
+    , Ranges(ranges)
   {
   }
 
@@ -61,6 +62,7 @@ public:
     BlockTrial& trial = BlockTrial::OfThread();
     trial.Run(samples, block.Size, this->BlockBits);
     trial.CopyTo(stream);
+    this->Ranges.Add(block, trial.GetDecoded());
     if (found.Minimum <= found.Maximum)
     {
       const BlockError error = this->Gatherer.FindError(block, hidden, samples, trial.GetDecoded());
@@ -86,6 +88,7 @@ private:
   double Scale;
   std::vector<vtkTypeUInt64>& Masks;
   MacrocellErrors& Errors;
+  BlockRangeFinder& Ranges;
 };
 }
 
@@ -96,27 +99,39 @@ struct SampleEncoder::Worker
   void operator()(ArrayT* array, SampleEncoder& self, BlockStream& blocks, SlabRange slabs,
     int component, const ProgressCallback& progress, bool& complete) const
   {
-    const vtkTypeInt64 number = (slabs.Last - slabs.First) * blocks.GetBlocksPerSlab();
-    std::vector<vtkTypeUInt64> masks(self.Hidden.MayHide() ? number : 0);
-    const ArrayEncoder<ArrayT> encoder(
-      blocks, slabs.First, array, component, self.Units, self.Hidden, masks, *self.Errors);
-    complete = ForEachBlock(blocks, slabs, StreamAccess::Write, self.Summary, progress, encoder);
-    for (const vtkTypeUInt64 mask : masks)
-    {
-      self.Mask.Append(mask);
-    }
-    self.Mask.Append(0, masks.empty() ? number : 0);
+    complete = ForEachPart(blocks, slabs, progress,
+      [&](SlabRange part, const ProgressCallback& progressOfPart)
+      {
+        const vtkTypeInt64 number = (part.Last - part.First) * blocks.GetBlocksPerSlab();
+        std::vector<vtkTypeUInt64> masks(self.Hidden.MayHide() ? number : 0);
+        const ArrayEncoder<ArrayT> encoder(blocks, slabs.First, part.First, array, component,
+          self.Units, self.Hidden, masks, *self.Errors, *self.Ranges);
+        self.Ranges->OpenSlabs(part.Last);
+        const bool isComplete =
+          ForEachBlock(blocks, part, StreamAccess::Write, self.Summary, progressOfPart, encoder);
+        self.Ranges->CloseSlabs();
+        for (const vtkTypeUInt64 mask : masks)
+        {
+          self.Mask.Append(mask);
+        }
+        self.Mask.Append(0, masks.empty() ? number : 0);
+        return isComplete;
+      });
   }
 };
+
+//------------------------------------------------------------------------------
+Status SampleEncoder::Allocate(const BlockStream& blocks)
+{
+  this->Errors = std::make_unique<MacrocellErrors>(blocks.GetBlocks());
+  this->Ranges = std::make_unique<BlockRangeFinder>(blocks);
+  return this->Ranges->Allocate();
+}
 
 //------------------------------------------------------------------------------
 bool SampleEncoder::EncodeSlabs(BlockStream& blocks, vtkTypeInt64 first, vtkTypeInt64 last,
   vtkDataArray* array, int component, const ProgressCallback& progress)
 {
-  if (!this->Errors)
-  {
-    this->Errors = std::make_unique<MacrocellErrors>(blocks.GetBlocks());
-  }
   Worker worker;
   const SlabRange slabs = { first, last };
   bool complete = false;

@@ -9,11 +9,12 @@
  * float32), values are still counted but no longer encoded.
  *
  * Hidden samples get values that cost zfp little, and the summary leaves them out. Every block is
- * decoded again, to tell its error.
+ * decoded again, to tell its error and the range of its values.
  */
 #ifndef SampleEncoder_h
 #define SampleEncoder_h
 
+#include "Codec/BlockRangeFinder.h"
 #include "Codec/HiddenSamples.h"
 #include "Codec/MacrocellErrors.h"
 #include "Codec/Progress.h"
@@ -35,6 +36,12 @@ public:
   HiddenSamples Hidden;
 
   /**
+   * Makes room for what is kept of each block of a volume; an error where there is no memory, as
+   * the end of "There is ...". Comes before EncodeSlabs().
+   */
+  Status Allocate(const BlockStream& blocks);
+
+  /**
    * Encodes the slabs [first, last) of a stream from one component of an array, whose first tuple
    * is the first sample of slab `first`. Slabs must be encoded in order, each once. Returns false
    * when stopped.
@@ -51,12 +58,18 @@ public:
   const MacrocellErrors& GetErrors() const { return *this->Errors; }
   ///@}
 
+  /**
+   * Of all samples, once they are encoded.
+   */
+  BlockRangeFinder& GetRanges() { return *this->Ranges; }
+
 private:
   struct Worker;
 
   SampleSummary Summary;
   vtkBlockMask Mask;
-  std::unique_ptr<MacrocellErrors> Errors; // null before the first slab
+  std::unique_ptr<MacrocellErrors> Errors;  // null before Allocate()
+  std::unique_ptr<BlockRangeFinder> Ranges; // likewise
 };
 
 #endif

@@ -180,6 +180,20 @@ vtkTypeUInt32 Checksums::OfChecksums(vtkTypeUInt32Array* checksums)
 }
 
 //------------------------------------------------------------------------------
+vtkTypeUInt32 Checksums::OfArrays(vtkFieldData* fields, const std::vector<std::string>& names)
+{
+  vtkTypeUInt32 sum = 0;
+  for (const std::string& name : names)
+  {
+    if (vtkAbstractArray* const array = fields->GetAbstractArray(name.c_str()))
+    {
+      sum = AddValues(AddText(sum, name), array);
+    }
+  }
+  return sum;
+}
+
+//------------------------------------------------------------------------------
 vtkTypeUInt32 Checksums::OfFields(
   vtkFieldData* fields, const char* prefix, const char* without, const char* andWithout)
 {

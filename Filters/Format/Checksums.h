@@ -11,6 +11,9 @@
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+#include <string>
+#include <vector>
+
 class vtkCompressedVolume;
 class vtkFieldData;
 class vtkTypeUInt32Array;
@@ -37,6 +40,10 @@ bool IsKnownIntact(vtkUnsignedCharArray* stream, vtkTypeUInt32Array* checksums);
 
 /// Computes the checksum of a stream's checksums, by which one stream is told from another.
 vtkTypeUInt32 OfChecksums(vtkTypeUInt32Array* checksums);
+
+/// Computes the checksum of those of these arrays that are there, in this order, as OfFields()
+/// does.
+vtkTypeUInt32 OfArrays(vtkFieldData* fields, const std::vector<std::string>& names);
 
 /// Computes the checksum of all arrays whose names begin with `prefix`, in the order of their
 /// names, but for two. It depends on names and values, and not on the width of integers.

@@ -6,6 +6,7 @@
 #include "Format/Checksums.h"
 #include "Format/FieldArrays.h"
 #include "Format/LevelFormat.h"
+#include "Format/RangeFormat.h"
 #include "Format/SampleGrid.h"
 #include "Format/StreamArray.h"
 #include "Pieces/HidingFlags.h"
@@ -391,11 +392,16 @@ Status CheckMetadata(vtkImageData* image, Volume* volume)
     return Status::Error("it has the stream of another volume, too (", foreign,
       "): put volumes into one image before they are compressed, or decompress them first");
   }
-  return static_cast<vtkTypeInt64>(ChecksumOfMetadata(fields)) == expected
-    ? Status()
-    : Status::Error("its metadata (arrays of field data named ", Prefix,
+  if (static_cast<vtkTypeInt64>(ChecksumOfMetadata(fields)) == expected)
+  {
+    return {};
+  }
+  const Status ofRanges = RangeFormat::CheckRecords(Prefix, volume); // which say more
+  return ofRanges
+    ? Status::Error("its metadata (arrays of field data named ", Prefix,
         "*) do not match their "
-        "checksum: they are damaged, or were changed or rounded by what wrote them");
+        "checksum: they are damaged, or were changed or rounded by what wrote them")
+    : ofRanges;
 }
 
 //------------------------------------------------------------------------------
@@ -540,14 +546,23 @@ Status ReadHidden(vtkImageData* image, Volume* volume)
 }
 
 //------------------------------------------------------------------------------
-void StoreChecksums(Volume* volume, vtkFieldData* fields)
+// Where the image's own ghost arrays hide more, its blocks have other ranges.
+Status ReadRanges(vtkImageData* image, Volume* volume)
+{
+  const bool isBlanked = HidingFlags::FindForPoints(image) || HidingFlags::FindForCells(image);
+  return isBlanked ? Status() : RangeFormat::Read(image->GetFieldData(), Prefix, volume);
+}
+
+//------------------------------------------------------------------------------
+void StoreStream(Volume* volume, vtkFieldData* fields)
 {
   vtkUnsignedCharArray* const stream = volume->GetStream();
   const auto checksums = Checksums::OfPages(
     stream, Volume::StreamBytesFor(volume->GetDimensions(), volume->GetBlockBits()));
+  stream->SetName(StreamName);
+  fields->AddArray(stream);
   checksums->SetName(PageChecksumsName);
   fields->AddArray(checksums);
-  StoreValue<vtkTypeUInt32Array>(fields, MetadataChecksumName, ChecksumOfMetadata(fields));
   Checksums::SetIntact(stream, checksums);
 }
 }
@@ -567,7 +582,7 @@ Status CompressedVolumeFormat::Read(vtkImageData* image, vtkCompressedVolume* vo
                                : "there is no image");
   }
   for (const auto& read : { ReadNumbers, ReadGeometry, ReadArrayName, ReadStream, ReadUnits,
-         ReadErrors, ReadHidden, CheckMetadata, CheckStream, LevelFormat::Read })
+         ReadErrors, ReadHidden, ReadRanges, CheckMetadata, CheckStream, LevelFormat::Read })
   {
     if (Status status = read(image, volume); !status)
     {
@@ -611,9 +626,10 @@ void CompressedVolumeFormat::Write(vtkCompressedVolume* volume, vtkImageData* im
   }
   StoreMask(fields, HiddenSamplesName, volume->GetHiddenSamples());
   StoreMask(fields, HiddenCellsName, volume->GetHiddenCells());
-  volume->GetStream()->SetName(StreamName);
-  fields->AddArray(volume->GetStream());
-  StoreChecksums(volume, fields); // last: of what is there then
+  StoreStream(volume, fields);
+  RangeFormat::Write(volume, Prefix, fields);
+  // last: of what is there then
+  StoreValue<vtkTypeUInt32Array>(fields, MetadataChecksumName, ChecksumOfMetadata(fields));
   LevelFormat::Write(volume,
     vtkArrayDownCast<vtkTypeUInt32Array>(fields->GetAbstractArray(PageChecksumsName)), fields);
 }
@@ -669,5 +685,6 @@ void CompressedVolumeFormat::Remove(vtkDataObject* object)
   {
     object->GetFieldData()->RemoveArray(name);
   }
+  RangeFormat::Remove(Prefix, object->GetFieldData());
   LevelFormat::Remove(object->GetFieldData());
 }

@@ -5,6 +5,7 @@
 #include "Codec/LevelShape.h"
 #include "Format/Checksums.h"
 #include "Format/FieldArrays.h"
+#include "Format/RangeFormat.h"
 #include "Format/StreamArray.h"
 
 #include "vtkBlockMask.h"
@@ -92,7 +93,7 @@ public:
   {
     for (const auto& read : { &LevelReader::ReadShape, &LevelReader::ReadBlockBits,
            &LevelReader::ReadReals, &LevelReader::ReadHidden, &LevelReader::ReadStream,
-           &LevelReader::CheckMetadata, &LevelReader::CheckStream })
+           &LevelReader::ReadRanges, &LevelReader::CheckMetadata, &LevelReader::CheckStream })
     {
       if (Status status = (this->*read)(); !status)
       {
@@ -220,6 +221,8 @@ private:
     return {};
   }
 
+  Status ReadRanges() { return RangeFormat::Read(this->Fields, this->Array.Prefix, this->Level); }
+
   Status CheckMetadata()
   {
     vtkTypeInt64 expected = 0;
@@ -228,8 +231,13 @@ private:
     {
       return status;
     }
-    return static_cast<vtkTypeInt64>(ChecksumOf(this->Fields, this->Array)) == expected
-      ? Status()
+    if (static_cast<vtkTypeInt64>(ChecksumOf(this->Fields, this->Array)) == expected)
+    {
+      return {};
+    }
+    const Status ofRanges = RangeFormat::CheckRecords(this->Array.Prefix, this->Level);
+    return !ofRanges
+      ? ofRanges
       : Status::Error("its metadata (arrays of field data named ", this->Array.Prefix,
           "*) do not match their checksum: they are damaged, or were changed or rounded by what "
           "wrote them");
@@ -311,6 +319,7 @@ void WriteLevel(Volume* level, const Names& names, vtkFieldData* fields)
     stream, Volume::StreamBytesFor(level->GetDimensions(), level->GetBlockBits()));
   checksums->SetName(names("PageChecksums").c_str());
   fields->AddArray(checksums);
+  RangeFormat::Write(level, names.Prefix, fields);
   StoreValue<vtkTypeUInt32Array>(fields, names("Checksum").c_str(), ChecksumOf(fields, names));
   Checksums::SetIntact(stream, checksums);
 }

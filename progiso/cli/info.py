@@ -67,11 +67,19 @@ def verify_source(source: Source, path: Path) -> dict[str, str]:
             raise ValueError(
                 f"'{path}' is damaged: blocks{of_level} decode to values that are not finite"
             )
+        wrong = each.CheckRanges()
+        if wrong:
+            raise ValueError(f"'{path}' has{of_level} ranges of values that {wrong}")
         pages = -(-each.GetStream().GetNumberOfValues() // each.PageBytes)
         checked = each.GetHasChecksums() and path.suffix.lower() != ".zfp"
         low, high = decoded
         facts[f"stream{of_level}"] = (
             f"{pages} pages match their checksums" if checked else "has no checksums"
+        )
+        facts[f"ranges{of_level}"] = (
+            f"those of {each.GetNumberOfBlocks()} blocks, {each.GetRangeBytes()} bytes, are right"
+            if each.HasRanges()
+            else "are not stored"
         )
         facts[f"blocks{of_level}"] = (
             f"{each.GetNumberOfBlocks()} decode to values from {low:.9g} to {high:.9g}"

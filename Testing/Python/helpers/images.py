@@ -9,6 +9,7 @@ from progiso.geometry import samples_of
 from progiso.oracle import zfp_reference
 from progiso.oracle.caster import Volume
 from progiso.verify.fields import blobs, make_image, marschner_lobb, noise
+from progiso.vtkProgIsoFilters import vtkCompressedVolume
 
 #: What images are made of, passed on to all tests.
 __all__ = ["blobs", "make_image", "marschner_lobb", "noise", "samples_of"]
@@ -34,6 +35,15 @@ def without_checksums(compressed):
     version.SetName(PREFIX + "Version")
     version.InsertNextValue(2)
     fields.AddArray(version)
+    return compressed
+
+
+def without_ranges(compressed):
+    """Take from a compressed volume, in place, the ranges of its blocks, as of older files."""
+    volume = vtkCompressedVolume()
+    assert volume.Read(compressed) and volume.HasRanges()
+    volume.ClearRanges()
+    volume.Write(compressed)
     return compressed
 
 

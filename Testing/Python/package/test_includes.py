@@ -15,7 +15,7 @@ FOLDERS = {
     "Filters": ("Contour", "Format", "Pieces", "Codec"),
 }
 # The VTK classes stand above the folders, but for the values that all parts of a module share.
-VALUES = {"Status.h", "vtkBlockMask.h", "vtkCompressedVolume.h"}
+VALUES = {"Status.h", "vtkBlockMask.h", "vtkBlockRanges.h", "vtkCompressedVolume.h"}
 # Where samples are: the assembler pastes one of these.
 BLOCK_ACCESS = ("Cache/CachedBlocks.glsl", "Cache/DecodedVolume.glsl")
 SHADER_SUFFIXES = {".comp", ".frag", ".glsl", ".vert"}
