@@ -173,6 +173,11 @@ double vtkProgressiveIsosurfaceStatistics::GetPreparationMilliseconds()
   return this->GetImage().PreparationMilliseconds;
 }
 
+double vtkProgressiveIsosurfaceStatistics::GetBlocksDecodedAtFirst()
+{
+  return this->GetImage().BlocksDecodedAtFirst;
+}
+
 int vtkProgressiveIsosurfaceStatistics::GetNumberOfPrograms()
 {
   return static_cast<int>(this->GetImage().Programs.size());

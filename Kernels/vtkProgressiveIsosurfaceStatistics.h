@@ -70,12 +70,15 @@ public:
   ///@{
   /**
    * How the time before the first image of a volume splits, in milliseconds: reading (or computing)
-   * and compressing the inputs, as far as Render() does it; their upload; and on the GPU, finding
-   * the range of values of each block, with decoding if the whole volume is decoded.
+   * and compressing the inputs, as far as Render() does it; their upload; and on the GPU, decoding,
+   * if the whole volume is decoded, and finding the range of values of each block, unless it comes
+   * with the volume. And the number of blocks that this had the GPU decode: those at the borders of
+   * what it takes at a time count twice.
    */
   double GetInputMilliseconds();
   double GetUploadMilliseconds();
   double GetPreparationMilliseconds();
+  double GetBlocksDecodedAtFirst();
   ///@}
 
   ///@{

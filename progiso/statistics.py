@@ -51,9 +51,10 @@ def statistics(
         ``loading``
             How the time before the volume's first image splits, in milliseconds: ``input_ms``
             (reading and compressing, as far as the mapper does it), ``upload_ms``,
-            ``preparation_ms`` (on the GPU: ranges of values, and decoding of a volume that is
-            decoded whole), and ``programs`` {stage: {``ms``, ``waited_ms``}}: from when a stage's
-            program was asked for until it was compiled, and the wait for it.
+            ``preparation_ms`` (on the GPU: decoding of a volume that is decoded whole, and ranges of
+            values that do not come with the volume), the blocks that this decoded,
+            ``decoded_blocks``, and ``programs`` {stage: {``ms``, ``waited_ms``}}: from when a
+            stage's program was asked for until it was compiled, and the wait for it.
         ``memory``
             GPU memory in bytes: ``buffers`` {name: bytes}, their ``total``, the part of it that is
             the ``compressed`` stream, the ``budget`` for the rest, and the ``least_budget`` that
@@ -77,7 +78,7 @@ def statistics(
     >>> from progiso.data import fetch
     >>> result = progiso.render(progiso.read(fetch("sphere", size=32)), 0.8, size=(320, 240))
     >>> result.statistics["converged"], result.statistics["stages"][0]
-    (True, 'BlockRanges')
+    (True, 'MarkBlocks')
     """
     source = mapper.GetStatistics()
     names, stages = range(source.GetNumberOfBuffers()), range(source.GetNumberOfStages())
@@ -110,6 +111,7 @@ def _loading(source: vtkProgressiveIsosurfaceStatistics) -> dict[str, Any]:
         "input_ms": source.GetInputMilliseconds(),
         "upload_ms": source.GetUploadMilliseconds(),
         "preparation_ms": source.GetPreparationMilliseconds(),
+        "decoded_blocks": int(source.GetBlocksDecodedAtFirst()),
         "programs": {
             source.GetProgram(i): {
                 "ms": source.GetProgramMilliseconds(i),

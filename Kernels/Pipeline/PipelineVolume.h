@@ -4,6 +4,7 @@
 #define PipelineVolume_h
 
 #include "Store/CompressedStream.h"
+#include "Store/StoredRanges.h"
 
 #include <cstdint>
 #include <vector>
@@ -16,6 +17,7 @@ struct PipelineVolume
   CompressedStream Colors;                 ///< without data: none
   std::vector<std::uint32_t> Hidden;       ///< cells: see HiddenCells in Buffers.glsl; empty: none
   std::vector<std::uint32_t> HiddenColors; ///< likewise, samples of the colours
+  RangeReader Ranges;                      ///< of the values' blocks; empty: they are to be found
 };
 
 #endif

@@ -94,6 +94,7 @@ void ProgressivePipeline::SetVolume(const PipelineVolume& volume)
   this->Started = false;
   this->Needs.Blocks = this->Size.GetNumberOfBlocks();
   this->Needs.Macrocells = this->Size.GetNumberOfMacrocells();
+  this->Needs.StoredRanges = static_cast<bool>(volume.Ranges);
   this->Needs.Colored = volume.Colors.Data != nullptr;
   this->Needs.HiddenCells = !volume.Hidden.empty();
   this->Needs.HiddenWords = static_cast<std::int64_t>(volume.Hidden.size());
@@ -112,6 +113,7 @@ Status ProgressivePipeline::LoadVolume()
   this->Gpu->Timer.Forget();
   this->VolumeLoaded = false;
   this->VolumePrepared = false;
+  this->DecodedAtFirst = 0;
   this->MarkedIsovalues.clear();
   Status status = this->Gpu->Buffers.Allocate(Lifetime::Volume, this->Needs);
   if (status && !this->Needs.Cached)
@@ -140,8 +142,27 @@ Status ProgressivePipeline::UploadVolume()
     status =
       this->Streams.Upload(this->Gpu->Gl, Buffer::ColorStream, this->Volume.Colors, this->Size);
   }
+  if (status && this->Needs.StoredRanges)
+  {
+    this->UploadRanges();
+  }
   this->UploadMilliseconds = stopwatch.GetMilliseconds();
   return status;
+}
+
+// A part at a time: the host keeps them in another form, and not twice.
+void ProgressivePipeline::UploadRanges()
+{
+  const std::int64_t bytes = std::int64_t(sizeof(std::uint32_t)) * WordsOfMacrocell(this->Needs);
+  const std::int64_t most = HostTransfer::MaximumStagingBytes / bytes;
+  const GLuint buffer = this->Gpu->Buffers.GetName(Buffer::Macrocells);
+  for (std::int64_t first = 0; first < this->Needs.Macrocells; first += most)
+  {
+    const std::int64_t count = std::min(most, this->Needs.Macrocells - first);
+    const std::vector<std::uint32_t> words =
+      DescribeMacrocells(this->Volume.Ranges, first, count, this->Needs);
+    this->Gpu->Transfer.Write(buffer, bytes * first, words.data(), bytes * count);
+  }
 }
 
 // How far a volume's preparation is: it goes through all blocks once or more often.
@@ -184,9 +205,12 @@ const Status& ProgressivePipeline::PrepareVolume(const std::function<bool(double
   }
   Preparation preparation = { goesOn };
   this->Gpu->Timer.BeginPreparation();
-  const bool wentOn = this->Needs.Cached
-    ? this->FindRangesByBoxes(preparation)
-    : this->DecodeWholeVolume(preparation) && this->FindRangesOfDecoded(preparation);
+  bool wentOn = this->Needs.Cached || this->DecodeWholeVolume(preparation);
+  if (wentOn && !this->Needs.StoredRanges)
+  {
+    wentOn = this->Needs.Cached ? this->FindRangesByBoxes(preparation)
+                                : this->FindRangesOfDecoded(preparation);
+  }
   if (wentOn)
   {
     this->Gpu->Timer.EndPreparation();
@@ -219,7 +243,7 @@ bool ProgressivePipeline::RunSlices(const VolumeSlice& all, Preparation& prepara
 bool ProgressivePipeline::DecodeWholeVolume(Preparation& preparation)
 {
   preparation.Rounds =
-    InfoOf(Stage::DecodeColors).IsNeeded(Moment::Volume, this->Needs) ? 3.0 : 2.0;
+    (this->Needs.Colored ? 2.0 : 1.0) + (this->Needs.StoredRanges ? 0.0 : 1.0);
   preparation.Whole = static_cast<double>(this->Needs.Blocks);
   for (const Stage stage : { Stage::DecodeBlocks, Stage::DecodeColors })
   {
@@ -235,6 +259,7 @@ bool ProgressivePipeline::DecodeWholeVolume(Preparation& preparation)
       {
         const VolumeSlice slice = { rest.First, std::min(rest.First + size.Get(), rest.End) };
         this->Gpu->DispatchSlice(stage, GroupsFor(stage, slice.GetItems()), slice, {}, &segment);
+        this->DecodedAtFirst += slice.GetItems();
         return slice;
       };
       if (!this->RunSlices({ first, first + segment.Place.Blocks }, preparation, size, decode))
@@ -291,6 +316,7 @@ void ProgressivePipeline::FindRangesOf(const VolumeSlice& macrocells, const Boun
     const MacrocellBox box = FirstBox(this->Size, rest, this->Needs.Slots);
     this->Gpu->DispatchSlice(Stage::DecodeBlocks,
       GroupsFor(Stage::DecodeBlocks, box.GetNumberOfBlocks()), {}, box.Blocks, &segment);
+    this->DecodedAtFirst += box.GetNumberOfBlocks();
     this->Gpu->DispatchSlice(
       Stage::BlockRanges, box.Macrocells.GetItems(), box.Macrocells, box.Blocks, nullptr);
     rest.First = box.Macrocells.End;
@@ -313,6 +339,15 @@ Status ProgressivePipeline::DecodeVolume(std::vector<float>& values)
   this->Gpu->Transfer.Read(this->Gpu->Buffers.GetName(Buffer::CacheValues), 0, values.data(),
     static_cast<std::int64_t>(values.size() * sizeof(float)));
   return this->GetStatus();
+}
+
+std::vector<std::uint32_t> ProgressivePipeline::ReadRanges()
+{
+  const int words = WordsOfMacrocell(this->Needs);
+  std::vector<std::uint32_t> all(static_cast<std::size_t>(words * this->Needs.Macrocells));
+  this->Gpu->Transfer.Read(this->Gpu->Buffers.GetName(Buffer::Macrocells), 0, all.data(),
+    static_cast<std::int64_t>(all.size() * sizeof(std::uint32_t)));
+  return all;
 }
 
 //------------------------------------------------------------------------------

@@ -68,8 +68,9 @@ public:
   /// Is the volume still to be uploaded or prepared, or does a program lack that every pass runs?
   bool IsLoading() const;
   /// Prepares the volume once it is loaded: decodes it if it is to be decoded whole, and finds the
-  /// values' range in each block. Waits for the programs. `goesOn` gets the fraction that is done,
-  /// from time to time; false: everything has been released meanwhile.
+  /// values' range in each block, unless it came with the volume. Waits for the programs. `goesOn`
+  /// gets the fraction that is done, from time to time; false: everything has been released
+  /// meanwhile.
   const Status& PrepareVolume(const std::function<bool(double)>& goesOn);
   /// Starts an image of the prepared volume.
   void Start();
@@ -94,6 +95,8 @@ public:
   HitReadback GetHits();
   /// Decodes the whole volume with the pipeline's own decoder; `values`: 64 for each block.
   Status DecodeVolume(std::vector<float>& values);
+  /// The words of the prepared volume's macrocells: see WordsOfMacrocell().
+  std::vector<std::uint32_t> ReadRanges();
 
   /// The first error since Initialize().
   const Status& GetStatus() const { return this->Gpu->Gl.GetStatus(); }
@@ -118,6 +121,8 @@ public:
 
   ///@{ What was done before the first image of a volume, in milliseconds.
   double GetUploadMilliseconds() const { return this->UploadMilliseconds; }
+  /// Blocks that were decoded, of which some may count twice, or colours too.
+  std::int64_t GetBlocksDecodedAtFirst() const { return this->DecodedAtFirst; }
   double GetPreparationMilliseconds() { return this->Gpu->Timer.GetPreparationMilliseconds(); }
   std::vector<ProgramTime> GetProgramTimes() const { return this->Gpu->GetProgramTimes(); }
   ///@}
@@ -132,6 +137,7 @@ private:
   void FreeForPlan(bool reload);
   Status LoadVolume();
   Status UploadVolume();
+  void UploadRanges();
   struct Preparation;
   bool RunSlices(const VolumeSlice& all, Preparation& preparation, SliceSize& size,
     const std::function<VolumeSlice(const VolumeSlice&)>& run);
@@ -179,6 +185,7 @@ private:
   bool VolumeLoaded = false;
   bool VolumePrepared = false;
   bool Shown = false; ///< a picture has been, of a scene that needs the same programs
+  std::int64_t DecodedAtFirst = 0;
   double UploadMilliseconds = 0.0;
   bool CacheToEmpty = false;
   bool Started = false;

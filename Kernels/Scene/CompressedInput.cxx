@@ -4,6 +4,7 @@
 
 #include "FirstError.h"
 
+#include "vtkBlockRanges.h"
 #include "vtkCellData.h"
 #include "vtkCommand.h"
 #include "vtkCompressedVolume.h"
@@ -173,6 +174,12 @@ PipelineVolume DescribeVolume(vtkCompressedVolume* volume)
 {
   PipelineVolume described;
   described.Values = DescribeStream(volume);
+  if (volume->HasRanges())
+  {
+    described.Ranges = [ranges = volume->GetRanges()](
+                         std::int64_t macrocell, std::uint32_t* range, std::uint32_t* blockRanges)
+    { ranges.GetMacrocell(macrocell, range, blockRanges); };
+  }
   described.Hidden = DescribeHidden(volume->GetCellsWithoutSurface());
   volume->GetDimensions(described.Samples);
   return described;

@@ -50,6 +50,7 @@ void CollectLoading(ProgressivePipeline& pipeline, ImageStatistics& statistics)
 {
   statistics.UploadMilliseconds = pipeline.GetUploadMilliseconds();
   statistics.PreparationMilliseconds = pipeline.GetPreparationMilliseconds();
+  statistics.BlocksDecodedAtFirst = static_cast<double>(pipeline.GetBlocksDecodedAtFirst());
   for (const ProgramTime& time : pipeline.GetProgramTimes())
   {
     statistics.Programs.push_back(

@@ -61,6 +61,7 @@ struct ImageStatistics
   double InputMilliseconds = 0.0; ///< reading and compressing
   double UploadMilliseconds = 0.0;
   double PreparationMilliseconds = 0.0;
+  double BlocksDecodedAtFirst = 0.0;
   std::vector<ProgramStatistics> Programs;
   std::vector<std::pair<std::string, std::int64_t>> Buffers; ///< names and bytes
   std::int64_t StreamBytes = 0;                              ///< of the compressed streams

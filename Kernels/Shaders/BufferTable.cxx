@@ -73,7 +73,7 @@ const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers()
       "likewise, of the volume that gives the colours" },
     { Buffer::Macrocells, "macrocells", "MACROCELLS", Lifetime::Volume, Always,
       "2.1 *B*, with a cache 2.3 *B*",
-      [](const E& e) { return BytesOfMacrocell(e) * e.Macrocells; }, Access::None,
+      [](const E& e) { return BytesOfMacrocell(e) * e.Macrocells; }, Access::Write,
       "ranges of values of macrocells and their blocks; with a cache the map page, "
       "and which blocks are requested" },
     { Buffer::BlockMarks, "block_marks", "BLOCK_MARKS", Lifetime::Volume, Always, "0.13 *B*",

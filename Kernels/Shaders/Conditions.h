@@ -21,6 +21,10 @@ constexpr Condition Cached = { "cache", [](const E& e) { return e.Cached; } };
 constexpr Condition Evicting = { "cache smaller than the volume",
   [](const E& e) { return e.Cached && e.Slots < e.Blocks; } };
 constexpr Condition Decoded = { "no cache", [](const E& e) { return !e.Cached; } };
+constexpr Condition UnknownRanges = { "ranges of blocks to be found",
+  [](const E& e) { return !e.StoredRanges; } };
+constexpr Condition DecodedAtFirst = { "no cache, or ranges of blocks to be found",
+  [](const E& e) { return !e.Cached || !e.StoredRanges; } };
 constexpr Condition Colored = { "colours", [](const E& e) { return e.Colored; } };
 constexpr Condition CachedColors = { "cache and colours",
   [](const E& e) { return e.Cached && e.Colored; } };

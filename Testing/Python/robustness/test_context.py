@@ -16,7 +16,7 @@ from helpers.scenes import CACHED
 
 
 @pytest.mark.parametrize(
-    "file", ["BlockRanges.comp", "CastRays.comp", "PlanPass.comp", "Composite.frag"]
+    "file", ["MarkBlocks.comp", "CastRays.comp", "PlanPass.comp", "Composite.frag"]
 )
 def test_a_shader_does_not_compile(image, file):
     """Every render tries again; the first tells of it, in the compiler's own words."""
