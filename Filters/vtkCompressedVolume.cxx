@@ -444,8 +444,7 @@ std::string vtkCompressedVolume::CheckRanges()
   {
     return "cannot be checked: there is not enough memory for those that its blocks decode to";
   }
-  return areSame ? std::string()
-                 : "are wrong: its blocks decode to others";
+  return areSame ? std::string() : "are wrong: its blocks decode to others";
 }
 
 //------------------------------------------------------------------------------

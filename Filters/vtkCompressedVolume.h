@@ -50,8 +50,8 @@
  * - ProgIso.Levels (2 64-bit integers): their number, and the CRC-32 of the volume's PageChecksums,
  *   so that levels of another stream are found out
  * - ProgIso.Level<k>.Stream, .BlockBits, .Dimensions, .Range, .Error, .HiddenSamples, .HiddenCells,
- *   .PageChecksums: as above, of the level's own samples before encoding; hidden cells are those
- *   between samples, of cell data, too
+ *   .PageChecksums, .Ranges, .RangesDirectory, .RangesOf: as above, of the level's own samples;
+ * hidden cells are those between samples, of cell data, too
  * - ProgIso.Level<k>.Steps (3 integers): samples of the volume from one of the level to the next
  * - ProgIso.Level<k>.Distance (double): the interpolant of the level is nowhere farther from a
  *   visible sample of the original array, where none of its own levels' hide something

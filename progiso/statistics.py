@@ -51,10 +51,10 @@ def statistics(
         ``loading``
             How the time before the volume's first image splits, in milliseconds: ``input_ms``
             (reading and compressing, as far as the mapper does it), ``upload_ms``,
-            ``preparation_ms`` (on the GPU: decoding of a volume that is decoded whole, and ranges of
-            values that do not come with the volume), the blocks that this decoded,
-            ``decoded_blocks``, and ``programs`` {stage: {``ms``, ``waited_ms``}}: from when a
-            stage's program was asked for until it was compiled, and the wait for it.
+            ``preparation_ms`` (on the GPU: decoding of a volume that is decoded whole, and finding
+            ranges of values that do not come with it), ``decoded_blocks``, how many this decoded,
+            and ``programs`` {stage: {``ms``, ``waited_ms``}}: from when a stage's program was asked
+            for until it was compiled, and the wait for it.
         ``memory``
             GPU memory in bytes: ``buffers`` {name: bytes}, their ``total``, the part of it that is
             the ``compressed`` stream, the ``budget`` for the rest, and the ``least_budget`` that

@@ -316,7 +316,7 @@ void BlockRangeFinder::Store(const vtkTypeInt64 place[3], const KeyRange ranges[
   const vtkTypeInt64 number = this->Layout.PageOf(place);
   const RangeLayout::Page page = this->Layout.GetPage(number);
   RangeRecords::Store(
-    page, RangeLayout::IndexIn(page, place), macrocell, this->RecordOf(page, number));
+    page, RangeLayout::PlaceIn(page, place), macrocell, this->RecordOf(page, number));
 }
 
 //------------------------------------------------------------------------------

@@ -75,7 +75,7 @@ public:
   }
 
   /// The number of a macrocell in its page.
-  static int IndexIn(const Page& page, const vtkTypeInt64 macrocell[3])
+  static int PlaceIn(const Page& page, const vtkTypeInt64 macrocell[3])
   {
     int at[3];
     std::transform(macrocell, macrocell + 3, page.First, at,

@@ -127,7 +127,7 @@ void RangeRecords::Store(
 void RangeRecords::Load(const RangeLayout& layout, const RangeLayout::Page& page,
   const vtkTypeInt64 place[3], const vtkTypeUInt64* record, Macrocell& macrocell)
 {
-  const int index = RangeLayout::IndexIn(page, place);
+  const int index = RangeLayout::PlaceIn(page, place);
   const vtkTypeUInt64 bit = vtkTypeUInt64(1) << index;
   macrocell.Range = RangeOf(record[1 + index]);
   if (record[0] & bit)

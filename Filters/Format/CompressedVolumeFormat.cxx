@@ -397,11 +397,10 @@ Status CheckMetadata(vtkImageData* image, Volume* volume)
     return {};
   }
   const Status ofRanges = RangeFormat::CheckRecords(Prefix, volume); // which say more
-  return ofRanges
-    ? Status::Error("its metadata (arrays of field data named ", Prefix,
-        "*) do not match their "
-        "checksum: they are damaged, or were changed or rounded by what wrote them")
-    : ofRanges;
+  return ofRanges ? Status::Error("its metadata (arrays of field data named ", Prefix,
+                      "*) do not match their "
+                      "checksum: they are damaged, or were changed or rounded by what wrote them")
+                  : ofRanges;
 }
 
 //------------------------------------------------------------------------------

@@ -44,8 +44,7 @@ bool AreOfThisStream(vtkFieldData* fields, const std::string& prefix)
 //------------------------------------------------------------------------------
 Status Damaged(const std::string& prefix, const std::string& error)
 {
-  return error.empty() ? Status()
-                       : Status::Error(prefix, RecordsName, " is damaged: ", error);
+  return error.empty() ? Status() : Status::Error(prefix, RecordsName, " is damaged: ", error);
 }
 }
 

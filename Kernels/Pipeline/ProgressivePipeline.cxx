@@ -242,8 +242,7 @@ bool ProgressivePipeline::RunSlices(const VolumeSlice& all, Preparation& prepara
 // Decodes all blocks, an invocation each, then frees the streams.
 bool ProgressivePipeline::DecodeWholeVolume(Preparation& preparation)
 {
-  preparation.Rounds =
-    (this->Needs.Colored ? 2.0 : 1.0) + (this->Needs.StoredRanges ? 0.0 : 1.0);
+  preparation.Rounds = (this->Needs.Colored ? 2.0 : 1.0) + (this->Needs.StoredRanges ? 0.0 : 1.0);
   preparation.Whole = static_cast<double>(this->Needs.Blocks);
   for (const Stage stage : { Stage::DecodeBlocks, Stage::DecodeColors })
   {

@@ -97,7 +97,8 @@ protected:
     scene.View.NumberOfIsovalues = 1;
     EXPECT_TRUE(this->Pipeline.SetScene(scene, settings, true))
       << this->Pipeline.GetStatus().GetMessage();
-    EXPECT_TRUE(this->Pipeline.PrepareVolume([](double) { return true; })) << this->Pipeline.GetStatus().GetMessage();
+    EXPECT_TRUE(this->Pipeline.PrepareVolume([](double) { return true; }))
+      << this->Pipeline.GetStatus().GetMessage();
     const std::vector<std::uint32_t> all = this->Pipeline.ReadRanges();
     SceneNeeds needs;
     needs.Cached = cached;

@@ -89,8 +89,8 @@ ivec3 SideOffset(int i)
   return ivec3(i) >> ivec3(0, 1, 2) & 1;
 }
 
-// A step of the 8 bits in which a block's range is told within its macrocell's. Sums and products of
-// floats are the same everywhere, quotients are not: the last of the 256 steps is a little longer.
+// A step of the 8 bits in which a block's range is told within its macrocell's. Sums and products
+// of floats are the same everywhere, quotients are not: the last step is a little longer.
 float RangeUnit(vec2 macrocellRange)
 {
   precise float unit = macrocellRange.y * (1.0 / 256.0) - macrocellRange.x * (1.0 / 256.0);

@@ -12,6 +12,7 @@ import sys
 import progiso
 from progiso.data import fetch
 from progiso.measure.isosurface import Isosurface
+from progiso.vtkProgIsoFilters import vtkCompressedVolume
 
 SIZE = (64, 64)
 #: Bytes beside the least budget: the cache is smaller than the volume, and evicts.
@@ -20,6 +21,10 @@ ROOM = 1 << 16
 
 def main(variant: str) -> None:
     image = progiso.compress(progiso.read(fetch("gyroid", size=64)), rate=4)
+    volume = vtkCompressedVolume()
+    volume.Read(image)
+    volume.ClearRanges()  # they are found by a stage, too
+    volume.Write(image)
     view = Isosurface(image, 0.0, SIZE, cached=variant == "cached")
     view.set_passes_per_render(2)
     view.renderer.ResetCamera()

@@ -7,7 +7,7 @@ import zlib
 
 import numpy as np
 import pytest
-from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkImagingCore import vtkExtractVOI
 from vtkmodules.vtkIOLegacy import vtkDataSetReader, vtkDataSetWriter
@@ -313,3 +313,23 @@ def test_verify_finds_wrong_ranges(volume, tmp_path, capsys):
     progiso.save(wrong, tmp_path / "wrong.vti")
     assert main(["info", "--verify", str(tmp_path / "wrong.vti")]) != 0
     assert "ranges of values that are wrong" in capsys.readouterr().err
+
+
+def test_levels_have_their_own(tmp_path):
+    """Whatever the slabs; what is damaged is named."""
+    values = blobs((70, 90, 130), 4)
+    values[3:20, 5:20, 30:66] = np.nan
+    whole = progiso.compress(make_image(values), rate=4, levels=3)
+    slabs = (values[i : i + 12] for i in range(0, 70, 12))
+    again = progiso.compress_slabs(slabs, (130, 90, 70), rate=4, levels=3)
+    ranges = []
+    for volume in (whole, again):
+        reader = read(volume)[0]
+        levels = [reader.GetLevel(k + 1) for k in range(reader.GetNumberOfLevels())]
+        assert levels and all(level.HasRanges() for level in levels)
+        assert [level.CheckRanges() for level in levels] == [""] * len(levels)
+        array = volume.GetFieldData().GetAbstractArray("ProgIso.Level1.Ranges")
+        ranges.append(vtk_to_numpy(array).tolist())
+    assert ranges[0] == ranges[1]
+    vtk_to_numpy(array)[-1] ^= np.uint64(2)
+    assert "level 1 of it: ProgIso.Level1.Ranges is damaged" in read(again)[1]
