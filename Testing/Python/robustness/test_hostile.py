@@ -19,9 +19,11 @@ from helpers.images import (
     noise,
     reference_values,
     without_checksums,
+    without_ranges,
 )
 from helpers.messages import vtk_messages
 from helpers.scenes import CACHED, Scene, least_budget
+from progiso import vtkCompressedVolume
 from progiso.oracle import zfp_reference
 from progiso.oracle.caster import Camera
 
@@ -80,7 +82,7 @@ def window():
 def damaged(request):
     """Return a compressed volume with a damaged stream, and an isovalue in the middle of what
     libzfp decodes of it."""
-    image = progiso.compress(make_image(blobs(SHAPE, 3)), rate=8)
+    image = without_ranges(progiso.compress(make_image(blobs(SHAPE, 3)), rate=8))
     stream = vtk_to_numpy(image.GetFieldData().GetAbstractArray(PREFIX + "Stream"))
     DAMAGE[request.param](
         stream, np.random.default_rng(5)
@@ -302,3 +304,16 @@ def test_command_line(folder):
         lines = done.stderr.strip().splitlines()
         assert done.returncode == 1 and len(lines) == 1, done.stdout + done.stderr
         assert "error" in lines[0] and word in lines[0]
+
+
+@pytest.mark.parametrize("scale", [0.0, 1e-3, 1e30])
+@pytest.mark.parametrize("settings", [{}, CACHED], ids=["whole", "cached"])
+def test_wrong_ranges(scale, settings):
+    """Those of other samples, with checksums that are right: images come to an end all the same."""
+    image = progiso.compress(make_image(blobs(SHAPE, 3)), rate=8)
+    other = progiso.compress(make_image(np.float32(scale) * blobs(SHAPE, 4)), rate=8)
+    for name in ("Ranges", "RangesDirectory"):
+        image.GetFieldData().AddArray(other.GetFieldData().GetAbstractArray(PREFIX + name))
+    assert vtkCompressedVolume.Place(image)
+    for opacity in (1.0, 0.3):
+        shows(image, [0.1, 0.0], opacity, **settings)
