@@ -53,8 +53,8 @@
  *   .PageChecksums, .Ranges, .RangesDirectory, .RangesOf: as above, of the level's own samples;
  * hidden cells are those between samples, of cell data, too
  * - ProgIso.Level<k>.Steps (3 integers): samples of the volume from one of the level to the next
- * - ProgIso.Level<k>.Distance (double): the interpolant of the level is nowhere farther from a
- *   visible sample of the original array, where none of its own levels' hide something
+ * - ProgIso.Level<k>.Distance (double): the most that the interpolant of the level can be off a
+ *   sample of the original array, where neither it nor a level before it hides anything
  * - ProgIso.Level<k>.Checksum: as MetadataChecksum, of the arrays named ProgIso.Level<k>.*
  *
  * What the image's own ghost arrays (vtkGhostType) hide is hidden, too: filters may have blanked

@@ -7,7 +7,7 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkImagingCore import vtkImageShiftScale
 
 import progiso
-from helpers.images import PREFIX, blobs, make_image, noise, samples_of
+from helpers.images import PREFIX, blobs, make_image, noise, samples_of, without_checksums
 from progiso import vtkCompressedVolume, vtkImageZFPDecompress
 from progiso.bench.levels import CHOSEN, coarsened, interpolated
 
@@ -84,7 +84,8 @@ def test_other_arrays_stay_as_they_are(plain, volume):
     assert {name: with_levels[name] for name in without} == without
     more = with_levels.keys() - without.keys()
     assert more and not any(name.startswith(PREFIX) for name in more)
-    assert progiso.describe(progiso.compress(make_image(plain), rate=6))["levels"] == []
+    older = without_checksums(progiso.compress(make_image(plain), rate=6))
+    assert progiso.describe(older)["levels"] == []
 
 
 def test_small_volumes_have_none():
