@@ -92,9 +92,10 @@ Status SampleGrid::FindShift(vtkImageData* image, int shift[3]) const
       {
         return Status::Error("its samples were compressed with ", Describe(*this),
           ", and the image now has ", Describe(other),
-          ": a filter moved or resampled the image, which cannot be done to compressed samples. "
-          "Apply it before compression, or to the decompressed volume (if the samples moved along, "
-          "vtkCompressedVolume::Place() says so)");
+          ": a filter moved or resampled the image, which cannot be done to compressed samples: "
+          "apply it before compression, or to the decompressed volume. Where SetOrigin, SetSpacing "
+          "or SetDirectionMatrix moved it, samples and all, call vtkCompressedVolume::Place(image) "
+          "after them (Python: progiso.vtkCompressedVolume.Place(image))");
       }
       shift[axis] = static_cast<int>(whole);
     }

@@ -27,6 +27,13 @@ constexpr std::int64_t MostRoom = 2;         // for pixels, beside what the imag
 constexpr std::int64_t LargeShare = 4;       // an image that covers such a part of its viewport
 constexpr double PauseMilliseconds = 2000.0; // no movement has one
 
+std::string Mebibytes(std::int64_t bytes, int digits)
+{
+  std::ostringstream words;
+  words << std::fixed << std::setprecision(digits) << static_cast<double>(bytes) / (1 << 20);
+  return words.str();
+}
+
 std::int64_t LeastSlots(const SceneNeeds& scene)
 {
   return std::min(MinimumSlots, scene.Blocks);
@@ -150,14 +157,15 @@ std::string MemoryPlan::DescribeExcess() const
   {
     return "";
   }
-  const double mebibyte = 1 << 20;
-  std::ostringstream words;
-  words << std::fixed << std::setprecision(1) << "the memory budget of "
-        << static_cast<double>(this->Wanted) / mebibyte
-        << " MiB is too small: this volume at this image size takes "
-        << static_cast<double>(this->Budget) / mebibyte << " MiB (" << this->Budget
-        << " bytes) beside the compressed stream, the least that works";
-  return words.str();
+  int digits = 1; // so many that the two differ
+  while (digits < 7 && Mebibytes(this->Wanted, digits) == Mebibytes(this->Budget, digits))
+  {
+    ++digits;
+  }
+  return "the memory budget of " + Mebibytes(this->Wanted, digits) +
+    " MiB is too small: this volume at this image size takes " + Mebibytes(this->Budget, digits) +
+    " MiB (" + std::to_string(this->Budget) +
+    " bytes) beside the compressed stream, the least that works";
 }
 
 SceneNeeds WithCache(const SceneNeeds& scene, std::int64_t slots)

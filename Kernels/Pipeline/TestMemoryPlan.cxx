@@ -154,6 +154,13 @@ TEST(MemoryPlan, TellsThatTheLeastIsTaken)
   EXPECT_NE(words.find("1.5 MiB"), std::string::npos) << words;
   EXPECT_NE(words.find(std::to_string(plan.LeastBudget) + " bytes"), std::string::npos) << words;
   EXPECT_EQ(PlanMemory(Limits(), WithBudget(GiB), scene).DescribeExcess(), "");
+  // a byte too little does not look like enough
+  const MemoryPlan tight = PlanMemory(Limits(), WithBudget(plan.LeastBudget - 1), scene);
+  const std::string close = tight.DescribeExcess();
+  const std::size_t wanted = close.find("budget of ") + 10, taken = close.find("takes ") + 6;
+  EXPECT_NE(close.substr(wanted, close.find(" MiB") - wanted),
+    close.substr(taken, close.find(" MiB", taken) - taken))
+    << close;
   // a GPU with hardly any memory
   EXPECT_NE(PlanMemory(Limits(4 * MiB), WithBudget(0), scene).DescribeExcess(), "");
 }

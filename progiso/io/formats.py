@@ -105,6 +105,9 @@ OTHER = Format("others", "open_other", "other images")
 #: What reads a folder that has none of the suffixes above.
 FOLDER = Format("folders", "open_folder", "folders of DICOM files or numbered slices")
 
+#: What stands for the magnitude of vectors among their components.
+MAGNITUDE = -1
+
 #: What reads files that a pattern of names stands for.
 PATTERN = Format("folders", "open_pattern", "numbered slices")
 
@@ -133,6 +136,11 @@ def open_source(path: FilePath, selection: Selection | None = None) -> Source:
     kind = format_of(file)
     if kind is not PATTERN and not file.exists():
         raise FileNotFoundError(f"there is no file '{file}'")
+    if selection.component == MAGNITUDE:
+        raise ValueError(
+            f"'{file}' holds no magnitudes (component {MAGNITUDE}), they are computed when samples "
+            "are compressed: read it without a component, and give that to `compress` or `render`"
+        )
     opener = opener_of(kind, file)
     with reading(file), header_warnings(file):
         source = opener(file, selection)
