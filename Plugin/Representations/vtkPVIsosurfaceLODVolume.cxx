@@ -45,13 +45,27 @@ vtkProgressiveIsosurfaceMapper* vtkPVIsosurfaceLODVolume::FindSettings()
 //------------------------------------------------------------------------------
 void vtkPVIsosurfaceLODVolume::GetActors(vtkPropCollection* actors)
 {
+  this->WarnOfExport();
+  this->Superclass::GetActors(actors);
+}
+
+//------------------------------------------------------------------------------
+// Not this one: where an exporter takes volumes, the surface would become a box of its samples.
+void vtkPVIsosurfaceLODVolume::GetVolumes(vtkPropCollection* vtkNotUsed(volumes))
+{
+  this->WarnOfExport();
+}
+
+//------------------------------------------------------------------------------
+void vtkPVIsosurfaceLODVolume::WarnOfExport()
+{
   if (this->GetVisibility() && !this->WarnedOfExport)
   {
     this->WarnedOfExport = true;
-    vtkWarningMacro("Progressive Isosurface is no mesh: exports as X3D, glTF, VRML or POV lack it; "
-                    "show a Contour, or a ZFP Contour of the compressed volume, in its place.");
+    vtkWarningMacro("Progressive Isosurface is no mesh: exports as X3D, glTF, VRML, POV or vtk.js "
+                    "lack it; show a Contour, or a ZFP Contour of the compressed volume, in its "
+                    "place.");
   }
-  this->Superclass::GetActors(actors);
 }
 
 //------------------------------------------------------------------------------

@@ -23,8 +23,12 @@ public:
   int RenderVolumetricGeometry(vtkViewport* viewport) override;
   int RenderOverlay(vtkViewport* viewport) override;
 
-  /// Only those ask for actors who export a scene: warns, once an image, that they get none.
+  ///@{
+  /// Only those ask for actors and volumes who export a scene: warns, once an image, that they get
+  /// none.
   void GetActors(vtkPropCollection* actors) override;
+  void GetVolumes(vtkPropCollection* volumes) override;
+  ///@}
 
 protected:
   vtkPVIsosurfaceLODVolume() = default;
@@ -35,6 +39,7 @@ private:
   bool ShowsOutline();
   vtkProgressiveIsosurfaceMapper* FindSettings();
   int RenderIsosurfaces(vtkViewport* viewport);
+  void WarnOfExport();
 
   IsosurfaceTurns Turns;
   bool WarnedOfExport = false; ///< since the last image

@@ -1,5 +1,8 @@
 """Inputs that cannot be drawn: one error that says why, an empty image, and no crash."""
 
+import json
+import zipfile
+
 import session
 from paraview import simple
 
@@ -70,11 +73,14 @@ simple.Delete(nameless)
 exported = session.make_wavelet(10)
 session.show_isosurface(exported, view, Isovalues=[157.0])
 simple.Render(view)
-for suffix in ("x3d", "gltf"):
+for suffix in ("x3d", "gltf", "vtkjs"):
     with session.messages() as listener:
         simple.ExportView(str(session.OUTPUT / f"scene.{suffix}"), view=view)
     assert listener.GetOutput().count("is no mesh") == 1, listener.GetOutput()
     simple.Render(view)
+with zipfile.ZipFile(session.OUTPUT / "scene.vtkjs") as archive:
+    scene = json.loads(archive.read("index.json"))["scene"]
+assert scene == [], "no box of the volume's samples in its place"
 simple.Delete(exported)
 
 # points have no colours of cells: the solid colour, and a warning
