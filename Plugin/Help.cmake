@@ -18,3 +18,24 @@ if (PROGISO_QT)
     message(STATUS "ProgIso: no help pages in ParaView's window: they need Qt's Help module and xmlpatterns")
   endif ()
 endif ()
+
+# ParaView's generator makes pages only of proxies of its own classes. The representation's is made of a copy of its XML
+# in which it is one, and goes with the others by DOCUMENTATION_DIR.
+set(help_of_representation)
+if (help)
+  set(_xml "${CMAKE_CURRENT_SOURCE_DIR}/Representations/ProgIsoRepresentation.xml")
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${_xml}")
+  file(READ "${_xml}" _text)
+  set(_element ProgressiveIsosurfaceRepresentationProxy)
+  string(REPLACE "<${_element} " "<Proxy label=\"Progressive Isosurface\" " _text "${_text}")
+  string(REPLACE "</${_element}>" "</Proxy>" _text "${_text}")
+  set(_copy "${CMAKE_CURRENT_BINARY_DIR}/ProgIsoRepresentationHelp.xml")
+  file(GENERATE OUTPUT "${_copy}" CONTENT "${_text}")
+  paraview_client_documentation(
+    TARGET     ProgIsoRepresentationHelp
+    OUTPUT_DIR "${CMAKE_CURRENT_BINARY_DIR}/representation_help"
+    XMLS       "${_copy}")
+  set(help_of_representation
+    DOCUMENTATION_DIR          "${CMAKE_CURRENT_BINARY_DIR}/representation_help"
+    DOCUMENTATION_DEPENDENCIES ProgIsoRepresentationHelp)
+endif ()

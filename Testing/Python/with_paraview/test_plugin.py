@@ -123,3 +123,17 @@ def test_scene_in_the_window(build, tmp_path):
     assert found["summary"].startswith("100 % complete"), found["summary"]
     for name in ("loading", "blocks"):
         assert (tmp_path / f"gui_{name}.png").stat().st_size > 50_000
+
+
+def test_help_pages(build):
+    """ParaView's help has a page of each filter and of the representation, where it can be made."""
+    contents = list(build.glob("**/paraview_help/ProgIso.qhp"))
+    if not contents:
+        pytest.skip("no help pages: they need Qt's Help module and xmlpatterns")
+    listed, folder = contents[0].read_text(), contents[0].parent
+    pages = [f"filters.ZFP{name}" for name in ("Compress", "Decompress", "Contour")]
+    for page in (*pages, "representations.ProgressiveIsosurfaceRepresentation"):
+        assert f"<file>{page}.html</file>" in listed, listed
+    text = folder.joinpath(f"{page}.html").read_text()
+    for words in ("Isovalues", "Frame Time", "Clip Plane", "Resample Uneven Grids"):
+        assert words in text, words
