@@ -38,7 +38,8 @@ Outcome Find(const std::function<void(vtkImageData*)>& change)
   Outcome outcome;
   const Status status = grid.FindShift(image, outcome.Shift);
   outcome.Fits = status.IsOk();
-  for (const char* words : { "moved or resampled", "SetOrigin", "call vtkCompressedVolume::Place(" })
+  for (const char* words :
+    { "moved or resampled", "SetOrigin", "call vtkCompressedVolume::Place(" })
   {
     EXPECT_TRUE(status || status.GetMessage().find(words) != std::string::npos) << words;
   }

@@ -10,11 +10,9 @@
 
 #include "vtkBoundingBox.h"
 #include "vtkCellData.h"
-#include "vtkColorTransferFunction.h"
 #include "vtkCompressedVolume.h"
 #include "vtkContourValues.h"
 #include "vtkDataArray.h"
-#include "vtkDiscretizableColorTransferFunction.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -43,8 +41,6 @@ namespace
 // Blocks that a ray may test in one pass.
 constexpr int SPECULATION_ON = 64;
 constexpr int SPECULATION_OFF = 1;
-
-constexpr int Magnitude = -1; // as component of a vector, for the mapper
 
 using Message = vtkIsosurfaceBlocksMapper::Message;
 
@@ -96,7 +92,7 @@ vtkProgressiveIsosurfaceRepresentation::vtkProgressiveIsosurfaceRepresentation()
   this->Actor->SetProperty(this->Property);
   this->Actor->SetLODMapper(this->OutlineMapper);
   this->Property->ShadeOn();
-  this->Property->SetScalarOpacity(this->SurfaceOpacity);
+  this->Property->SetScalarOpacity(this->Colors.GetOpacities());
   this->SetDiffuseColor(1.0, 1.0, 1.0);
 }
 
@@ -124,7 +120,6 @@ int vtkProgressiveIsosurfaceRepresentation::ProcessViewRequest(
   if (requestType == vtkPVView::REQUEST_UPDATE())
   {
     // The superclass asks for ordered compositing; opaque surfaces are composited by depth.
-    this->UpdateLook();
     this->UpdateColors();
     if (!this->GetIsosurfaceMapper()->DrawsTranslucent(this->Property))
     {
@@ -191,7 +186,7 @@ int vtkProgressiveIsosurfaceRepresentation::RequestData(
   if (vtkImageData* input = vtkImageData::GetData(inputVector[0], 0))
   {
     const vtkSmartPointer<vtkImageData> image = ImageBlocks::WithNamedScalars(input);
-    this->CanDraw = this->FindDrawnArray(image);
+    this->CanDraw = this->FindArray(image);
     this->SetPiece(this->MakePiece(image));
     this->GetIsosurfaceMapper()->SetSelectionExtent(image->GetExtent()); // of what is selected from
   }
@@ -258,7 +253,7 @@ vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::MakePiece(
     return DistributedPieces::MakeCompressedPiece(image, this->CanDraw);
   }
   return DistributedPieces::MakePlainPiece(this->SelectArrays(image),
-    this->DrawnArray.Association == vtkDataObject::FIELD_ASSOCIATION_CELLS);
+    this->Drawn.Get().Association == vtkDataObject::FIELD_ASSOCIATION_CELLS);
 }
 
 //------------------------------------------------------------------------------
@@ -267,12 +262,12 @@ vtkSmartPointer<vtkPartitionedDataSet> vtkProgressiveIsosurfaceRepresentation::M
 {
   auto made = vtkSmartPointer<vtkPartitionedDataSet>::New();
   const ImageBlocks::Found blocks = ImageBlocks::Find(input);
-  if (!this->FindArrayOfBlocks(blocks))
+  if (!this->FindArray(blocks))
   {
     return made;
   }
-  const ImageBlocks::Arrays arrays = { this->DrawnArray.Association, this->DrawnArray.Name,
-    this->FindColorArrayOfBlocks(blocks) };
+  const ImageBlocks::Arrays arrays = { this->Drawn.Get().Association, this->Drawn.Get().Name,
+    SurfaceColors::FindArrayOfBlocks(this->GetColorScene(), blocks) };
   for (const ImageBlocks::Block& block : blocks.Blocks)
   {
     if (!ImageBlocks::HasArrays(block.Grid, { arrays.Association, arrays.Drawn, "" }))
@@ -293,6 +288,19 @@ vtkSmartPointer<vtkPartitionedDataSet> vtkProgressiveIsosurfaceRepresentation::M
 }
 
 //------------------------------------------------------------------------------
+template <typename Input>
+bool vtkProgressiveIsosurfaceRepresentation::FindArray(const Input& input)
+{
+  std::string error;
+  const bool found = this->Drawn.Find(input, error);
+  if (!error.empty())
+  {
+    this->Fail(error);
+  }
+  return found;
+}
+
+//------------------------------------------------------------------------------
 vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::SelectArrays(
   vtkImageData* image)
 {
@@ -300,180 +308,15 @@ vtkSmartPointer<vtkImageData> vtkProgressiveIsosurfaceRepresentation::SelectArra
   selected->CopyStructure(image);
   selected->GetPointData()->AddArray(image->GetPointGhostArray());
   selected->GetCellData()->AddArray(image->GetCellGhostArray());
-  vtkDataSetAttributes* from = image->GetAttributes(this->DrawnArray.Association);
-  vtkDataSetAttributes* to = selected->GetAttributes(this->DrawnArray.Association);
-  to->AddArray(from->GetArray(this->DrawnArray.Name.c_str()));
-  const ArraySelection color = this->GetColorArray();
-  if (color.Association == this->DrawnArray.Association)
+  vtkDataSetAttributes* from = image->GetAttributes(this->Drawn.Get().Association);
+  vtkDataSetAttributes* to = selected->GetAttributes(this->Drawn.Get().Association);
+  to->AddArray(from->GetArray(this->Drawn.Get().Name.c_str()));
+  const ArrayName color = this->GetColorScene().Color;
+  if (color.Association == this->Drawn.Get().Association)
   {
     to->AddArray(from->GetArray(color.Name.c_str()));
   }
   return selected;
-}
-
-//------------------------------------------------------------------------------
-bool vtkProgressiveIsosurfaceRepresentation::FindDrawnArray(vtkImageData* image)
-{
-  this->DrawnArray = ArraySelection();
-  return vtkCompressedVolume::IsCompressed(image) ? this->FindCompressedArray(image)
-                                                  : this->FindPlainArray(image);
-}
-
-//------------------------------------------------------------------------------
-bool vtkProgressiveIsosurfaceRepresentation::FindCompressedArray(vtkImageData* image)
-{
-  vtkNew<vtkCompressedVolume> volume;
-  vtkSmartPointer<vtkImageData> piece = DistributedPieces::WithoutGhosts(image);
-  if (piece->GetNumberOfPoints() == 0)
-  {
-    return false; // other processes have all pieces
-  }
-  if (!volume->Read(piece))
-  {
-    this->Fail(volume->GetErrorMessage());
-    return false;
-  }
-  this->DrawnArray = { volume->GetAssociation(), volume->GetArrayName() };
-  return true;
-}
-
-//------------------------------------------------------------------------------
-vtkProgressiveIsosurfaceRepresentation::ArraySelection
-vtkProgressiveIsosurfaceRepresentation::ChooseArray(vtkDataSet* grid)
-{
-  if (!this->IsosurfaceArray.Name.empty())
-  {
-    return this->IsosurfaceArray;
-  }
-  int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
-  vtkDataArray* array = ImageBlocks::FindDefaultArray(grid, association);
-  return { association, array && array->GetName() ? array->GetName() : "" };
-}
-
-//------------------------------------------------------------------------------
-bool vtkProgressiveIsosurfaceRepresentation::FindPlainArray(vtkImageData* image)
-{
-  this->DrawnArray = this->ChooseArray(image);
-  vtkDataSetAttributes* arrays = image->GetAttributes(this->DrawnArray.Association);
-  if (arrays && arrays->GetArray(this->DrawnArray.Name.c_str()))
-  {
-    return true;
-  }
-  // a process may hold an empty piece of a distributed image, which has no arrays
-  if (image->GetNumberOfPoints() > 0)
-  {
-    this->Fail(this->DrawnArray.Name.empty()
-        ? "the image has no array of numbers, and is no compressed volume"
-        : "the image has no array \"" + this->DrawnArray.Name +
-          "\" of numbers; choose an Isosurface Array");
-  }
-  return false;
-}
-
-//------------------------------------------------------------------------------
-bool vtkProgressiveIsosurfaceRepresentation::FindArrayOfBlocks(const ImageBlocks::Found& blocks)
-{
-  this->DrawnArray = ArraySelection();
-  bool found = false;
-  for (const ImageBlocks::Block& block : blocks.Blocks)
-  {
-    this->DrawnArray = found ? this->DrawnArray : this->ChooseArray(block.Grid);
-    vtkImageData* image = vtkImageData::SafeDownCast(block.Grid);
-    if (image && vtkCompressedVolume::IsCompressed(image) && !found)
-    {
-      found = this->FindCompressedArray(image);
-    }
-    found = found ||
-      ImageBlocks::HasArrays(
-        block.Grid, { this->DrawnArray.Association, this->DrawnArray.Name, "" });
-  }
-  // other processes may have the blocks that can be drawn
-  if (!DistributedPieces::IsTrueAnywhere(found))
-  {
-    const bool anyGrid = DistributedPieces::IsTrueAnywhere(!blocks.Blocks.empty());
-    this->Fail(anyGrid
-        ? "no block has the array \"" + this->DrawnArray.Name + "\"; choose an Isosurface Array"
-        : "none of the blocks is an image; use the filter Resample To Image");
-  }
-  return found;
-}
-
-//------------------------------------------------------------------------------
-vtkProgressiveIsosurfaceRepresentation::ArraySelection
-vtkProgressiveIsosurfaceRepresentation::GetColorArray()
-{
-  vtkInformation* color = this->GetInputArrayInformation(0);
-  const bool chosen = this->ColorMap && color && color->Has(vtkDataObject::FIELD_ASSOCIATION()) &&
-    color->Has(vtkDataObject::FIELD_NAME()) && color->Get(vtkDataObject::FIELD_NAME());
-  return chosen ? ArraySelection{ color->Get(vtkDataObject::FIELD_ASSOCIATION()),
-    color->Get(vtkDataObject::FIELD_NAME()) }
-                : ArraySelection();
-}
-
-//------------------------------------------------------------------------------
-vtkDataArray* vtkProgressiveIsosurfaceRepresentation::FindArray(const std::string& name)
-{
-  vtkImageData* image = vtkImageData::SafeDownCast(this->Cache);
-  int association = this->DrawnArray.Association;
-  auto* blocks = vtkPartitionedDataSet::SafeDownCast(this->Cache);
-  if (blocks && blocks->GetNumberOfPartitions() > 0)
-  {
-    image = vtkImageData::SafeDownCast(blocks->GetPartition(0));
-    association = vtkDataObject::FIELD_ASSOCIATION_POINTS; // whatever it was
-  }
-  return image ? image->GetAttributes(association)->GetArray(name.c_str()) : nullptr;
-}
-
-//------------------------------------------------------------------------------
-int vtkProgressiveIsosurfaceRepresentation::GetDrawnComponent()
-{
-  vtkDataArray* array = this->FindArray(this->DrawnArray.Name);
-  const bool isLast = array && this->IsosurfaceComponent == array->GetNumberOfComponents();
-  return isLast ? Magnitude : this->IsosurfaceComponent; // as ParaView numbers them
-}
-
-//------------------------------------------------------------------------------
-int vtkProgressiveIsosurfaceRepresentation::GetColorComponent()
-{
-  vtkDataArray* array = this->FindArray(this->GetColorArray().Name);
-  if (!array || array->GetNumberOfComponents() == 1)
-  {
-    return 0;
-  }
-  return this->ColorMap->GetVectorMode() == vtkScalarsToColors::MAGNITUDE
-    ? Magnitude
-    : std::max(this->ColorMap->GetVectorComponent(), 0);
-}
-
-//------------------------------------------------------------------------------
-bool vtkProgressiveIsosurfaceRepresentation::IsColoredByDrawnArray()
-{
-  const ArraySelection color = this->GetColorArray();
-  if (color.Name.empty() || color.Association != this->DrawnArray.Association ||
-    color.Name != this->DrawnArray.Name)
-  {
-    return false;
-  }
-  vtkDataArray* array = this->FindArray(color.Name); // a compressed volume has one component
-  return !array || array->GetNumberOfComponents() == 1 ||
-    this->GetColorComponent() == this->GetDrawnComponent();
-}
-
-//------------------------------------------------------------------------------
-std::string vtkProgressiveIsosurfaceRepresentation::FindColorArrayOfBlocks(
-  const ImageBlocks::Found& blocks)
-{
-  const ArraySelection color = this->GetColorArray();
-  const ImageBlocks::Arrays drawn = { this->DrawnArray.Association, this->DrawnArray.Name, "" };
-  ImageBlocks::Arrays arrays = drawn;
-  arrays.Color = color.Association == this->DrawnArray.Association ? color.Name : "";
-  const bool everywhere = std::all_of(blocks.Blocks.begin(), blocks.Blocks.end(),
-    [&](const ImageBlocks::Block& block)
-    {
-      return ImageBlocks::HasArrays(block.Grid, arrays) ||
-        !ImageBlocks::HasArrays(block.Grid, drawn);
-    });
-  return everywhere ? arrays.Color : "";
 }
 
 //------------------------------------------------------------------------------
@@ -496,14 +339,13 @@ void vtkProgressiveIsosurfaceRepresentation::UpdateMapperParameters()
   // ParaView calls this before every image: what has not changed must keep its modified time, or
   // the mapper restarts the image.
   vtkProgressiveIsosurfaceMapper* mapper = this->GetIsosurfaceMapper();
-  const bool cellData = this->DrawnArray.Association == vtkDataObject::FIELD_ASSOCIATION_CELLS &&
+  const bool cellData = this->Drawn.Get().Association == vtkDataObject::FIELD_ASSOCIATION_CELLS &&
     vtkImageData::SafeDownCast(this->Cache); // of blocks it has become point data
-  mapper->SelectScalarArray(this->DrawnArray.Name.c_str());
+  mapper->SelectScalarArray(this->Drawn.Get().Name.c_str());
   mapper->SetScalarMode(
     cellData ? VTK_SCALAR_MODE_USE_CELL_FIELD_DATA : VTK_SCALAR_MODE_USE_POINT_FIELD_DATA);
-  mapper->SetComponent(this->GetDrawnComponent());
+  mapper->SetComponent(this->Drawn.GetComponent(this->Cache));
   this->UpdateCropping();
-  this->UpdateLook();
   this->UpdateColors();
   this->UpdateClipping(this->VolumeMapper);
   this->Actor->SetMapper(this->VolumeMapper);
@@ -523,33 +365,22 @@ void vtkProgressiveIsosurfaceRepresentation::UpdateCropping()
 }
 
 //------------------------------------------------------------------------------
-void vtkProgressiveIsosurfaceRepresentation::UpdateColors()
+SurfaceColors::Scene vtkProgressiveIsosurfaceRepresentation::GetColorScene()
 {
-  vtkProgressiveIsosurfaceMapper* mapper = this->GetIsosurfaceMapper();
-  const ArraySelection color = this->GetColorArray();
-  const bool byOther = color.Association == this->DrawnArray.Association &&
-    !this->IsColoredByDrawnArray() && this->FindArray(color.Name);
-  mapper->SetColorArrayName(byOther ? color.Name.c_str() : nullptr);
-  mapper->SetColorComponent(byOther ? this->GetColorComponent() : 0);
-  mapper->SetColorLookupTable(byOther ? this->ColorMap.Get() : nullptr);
-  this->WarnOfLostColors(!byOther && !this->IsColoredByDrawnArray() ? color : ArraySelection());
+  return { this->Drawn, this->Cache, this->Colors.GetArray(this->GetInputArrayInformation(0)) };
 }
 
 //------------------------------------------------------------------------------
-void vtkProgressiveIsosurfaceRepresentation::WarnOfLostColors(const ArraySelection& lost)
+void vtkProgressiveIsosurfaceRepresentation::UpdateColors()
 {
-  const bool points = this->DrawnArray.Association == vtkDataObject::FIELD_ASSOCIATION_POINTS;
-  const bool ofOthers = points ? lost.Association == vtkDataObject::FIELD_ASSOCIATION_CELLS
-                               : lost.Association == vtkDataObject::FIELD_ASSOCIATION_POINTS;
-  const std::string name = this->CanDraw && ofOthers ? lost.Name : "";
-  if (name != this->LostColor && !name.empty())
+  const SurfaceColors::Scene scene = this->GetColorScene();
+  this->Colors.UpdateProperty(this->Property, scene);
+  this->Colors.UpdateMapper(this->GetIsosurfaceMapper(), scene);
+  const std::string loss = this->Colors.DescribeLoss(scene, this->CanDraw);
+  if (!loss.empty())
   {
-    const std::string filter = points ? "Cell Data to Point Data" : "Point Data to Cell Data";
-    this->Warn(std::string("the surface of ") + (points ? "point" : "cell") +
-      " data has its solid colour: the array \"" + name + "\" belongs to " +
-      (points ? "cells" : "points") + "; use the filter " + filter + " to colour by it");
+    this->Warn(loss);
   }
-  this->LostColor = name;
 }
 
 //------------------------------------------------------------------------------
@@ -571,46 +402,19 @@ void vtkProgressiveIsosurfaceRepresentation::UpdateClipping(vtkVolumeMapper* map
 }
 
 //------------------------------------------------------------------------------
-void vtkProgressiveIsosurfaceRepresentation::UpdateLook()
-{
-  const bool mapped = this->IsColoredByDrawnArray();
-  this->Property->SetColor(mapped ? this->ColorMap.Get() : this->SolidColor.Get());
-  auto* map = vtkDiscretizableColorTransferFunction::SafeDownCast(this->ColorMap);
-  vtkPiecewiseFunction* opacities =
-    mapped && map && map->GetEnableOpacityMapping() ? map->GetScalarOpacityFunction() : nullptr;
-  vtkContourValues* values = this->Property->GetIsoSurfaceValues();
-  vtkNew<vtkPiecewiseFunction> wanted;
-  for (int i = 0; i < values->GetNumberOfContours(); ++i)
-  {
-    const double value = values->GetValue(i);
-    wanted->AddPoint(value, this->Opacity * (opacities ? opacities->GetValue(value) : 1.0));
-  }
-  const int nodes = wanted->GetSize();
-  if (nodes != this->SurfaceOpacity->GetSize() ||
-    !std::equal(wanted->GetDataPointer(), wanted->GetDataPointer() + 2 * nodes,
-      this->SurfaceOpacity->GetDataPointer()))
-  {
-    this->SurfaceOpacity->DeepCopy(wanted);
-  }
-}
-
-//------------------------------------------------------------------------------
 void vtkProgressiveIsosurfaceRepresentation::SetIsosurfaceArray(
   int, int, int, int association, const char* name)
 {
-  const std::string newName = name ? name : "";
-  if (association == this->IsosurfaceArray.Association && newName == this->IsosurfaceArray.Name)
+  if (this->Drawn.Choose({ association, name ? name : "" }))
   {
-    return;
+    this->MarkModified();
   }
-  this->IsosurfaceArray = { association, newName };
-  this->MarkModified();
 }
 
 //------------------------------------------------------------------------------
 void vtkProgressiveIsosurfaceRepresentation::SetIsosurfaceComponent(int component)
 {
-  this->IsosurfaceComponent = component;
+  this->Drawn.ChooseComponent(component);
 }
 
 //------------------------------------------------------------------------------
@@ -636,21 +440,19 @@ void vtkProgressiveIsosurfaceRepresentation::SetIsovalue(int index, double value
 //------------------------------------------------------------------------------
 void vtkProgressiveIsosurfaceRepresentation::SetDiffuseColor(double red, double green, double blue)
 {
-  // one node gives every isovalue the same colour
-  this->SolidColor->RemoveAllPoints();
-  this->SolidColor->AddRGBPoint(0.0, red, green, blue);
+  this->Colors.SetSolid(red, green, blue);
 }
 
 //------------------------------------------------------------------------------
 void vtkProgressiveIsosurfaceRepresentation::SetOpacity(double opacity)
 {
-  this->Opacity = opacity;
+  this->Colors.SetOpacity(opacity);
 }
 
 //------------------------------------------------------------------------------
 void vtkProgressiveIsosurfaceRepresentation::SetColor(vtkColorTransferFunction* colorMap)
 {
-  this->ColorMap = colorMap;
+  this->Colors.SetMap(colorMap);
 }
 
 //------------------------------------------------------------------------------
@@ -769,7 +571,7 @@ void vtkProgressiveIsosurfaceRepresentation::Warn(const std::string& message)
 void vtkProgressiveIsosurfaceRepresentation::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "IsosurfaceArray: " << this->IsosurfaceArray.Name << "\n";
-  os << indent << "DrawnArray: " << this->DrawnArray.Name << "\n";
+  os << indent << "IsosurfaceArray: " << this->Drawn.GetChoice().Name << "\n";
+  os << indent << "DrawnArray: " << this->Drawn.Get().Name << "\n";
   os << indent << "CanDraw: " << this->CanDraw << "\n";
 }

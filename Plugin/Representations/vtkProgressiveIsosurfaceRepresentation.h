@@ -24,6 +24,9 @@
 #ifndef vtkProgressiveIsosurfaceRepresentation_h
 #define vtkProgressiveIsosurfaceRepresentation_h
 
+#include "DrawnArray.h"
+#include "SurfaceColors.h"
+
 #include "vtkImageVolumeRepresentation.h"
 #include "vtkIsosurfaceBlocksMapper.h"       // for messages
 #include "vtkProgIsoRepresentationsModule.h" // for export macro
@@ -143,30 +146,16 @@ protected:
   void UpdateMapperParameters() override;
 
 private:
-  /// An array of the input by association and name.
-  struct ArraySelection
-  {
-    int Association = 0; // vtkDataObject::FIELD_ASSOCIATION_POINTS
-    std::string Name;
-  };
-
   struct ClipPlane
   {
     bool Used = false;
     vtkNew<vtkPlane> Plane;
   };
 
-  ///@{
-  /// Sets DrawnArray from the input. Returns false if nothing can be drawn; Error says why, if it
-  /// is not for other processes to draw.
-  bool FindDrawnArray(vtkImageData* image);
-  bool FindCompressedArray(vtkImageData* image);
-  bool FindPlainArray(vtkImageData* image);
-  bool FindArrayOfBlocks(const ImageBlocks::Found& blocks);
-  ///@}
-
-  /// The array that the user has chosen, or the default of a grid; without a name: it has none.
-  ArraySelection ChooseArray(vtkDataSet* grid);
+  /// Finds the array that is drawn, of an image or of blocks. Returns false if nothing can be
+  /// drawn; Error says why, if it is not for other processes to draw.
+  template <typename Input>
+  bool FindArray(const Input& input);
 
   ///@{
   /// Keeps a message for the user, who may be on another machine.
@@ -194,44 +183,16 @@ private:
   /// Tells ParaView how much of a plain image is compressed, and of what a first image takes done.
   void ShowProgress(vtkObject* caller, unsigned long event, void* fraction);
 
-  /// The array that was chosen to colour by; without a name: none.
-  ArraySelection GetColorArray();
-
-  /// An array of what is drawn, or of its first block; null: there is none, or not on this process.
-  vtkDataArray* FindArray(const std::string& name);
-
-  ///@{
-  /// The mapper's number of the component that is drawn, and of the one that is coloured by.
-  int GetDrawnComponent();
-  int GetColorComponent();
-  ///@}
-
-  /// Whether the representation is coloured by what is drawn: by the array and its component.
-  bool IsColoredByDrawnArray();
-
-  /// Finds the array to colour blocks by; empty if not all of them have it.
-  std::string FindColorArrayOfBlocks(const ImageBlocks::Found& blocks);
-
+  SurfaceColors::Scene GetColorScene();
   void UpdateColors();
-  /// Warns once of an array that the surface cannot be coloured by; without a name: there is none.
-  void WarnOfLostColors(const ArraySelection& lost);
 
   /// Gives a mapper the clip planes that are in use.
   void UpdateClipping(vtkVolumeMapper* mapper);
 
-  /// Sets the property's colours, and its opacities: a function with one node for each isovalue.
-  void UpdateLook();
-
-  ArraySelection IsosurfaceArray; ///< as chosen by the user; without a name: the default array
-  ArraySelection DrawnArray;      ///< of the present input
-  int IsosurfaceComponent = 0;    ///< as ParaView numbers them: the last one is the magnitude
-  std::string LostColor;          ///< that WarnOfLostColors() has warned of
+  DrawnArray Drawn;
+  SurfaceColors Colors;
   vtkIsosurfaceBlocksMapper::Message Error, Warning; ///< of updates
-  vtkSmartPointer<vtkColorTransferFunction> ColorMap;
-  vtkNew<vtkColorTransferFunction> SolidColor;
-  double Opacity = 1.0;
-  vtkNew<vtkPiecewiseFunction> SurfaceOpacity;
-  double WholeBounds[6]; ///< of the pieces of all processes
+  double WholeBounds[6];                             ///< of the pieces of all processes
   bool ResampleUnevenGrids = false;
   bool CanDraw = false;
   ClipPlane ClipPlanes[2];

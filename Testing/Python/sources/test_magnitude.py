@@ -39,7 +39,9 @@ def test_magnitude(write, tmp_path, capsys):
     path = write(tmp_path)
     volume = progiso.compress_file(path, rate=24, component=-1)
     found = vtk_to_numpy(progiso.decompress(volume).GetPointData().GetScalars())
-    assert np.allclose(found.reshape(VECTORS.shape[:3]), np.linalg.norm(VECTORS, axis=-1), atol=1e-4)
+    assert np.allclose(
+        found.reshape(VECTORS.shape[:3]), np.linalg.norm(VECTORS, axis=-1), atol=1e-4
+    )
     with pytest.raises(ValueError, match=r"v\.\w+.* holds no magnitudes.*compress"):
         progiso.read(path, component=-1)
     with pytest.raises(ValueError, match=r"holds no magnitudes"):
