@@ -49,6 +49,8 @@ uint ListedBlock(uint i)
 }
 #endif
 
+#define FOR_ROWS(DO) DO(0) DO(1) DO(2) DO(3)
+
 #ifdef BUFFER_HIDDEN_COLORS
 const uint NOT_A_NUMBER = 0x7FC00000u;
 
@@ -59,19 +61,31 @@ uvec4 MarkRow(uvec4 row, uint bits)
   return (row & ~hidden) | (NOT_A_NUMBER & hidden);
 }
 
-void MarkHidden(inout DecodedBlock decoded, uvec2 hidden)
+void MarkHidden(uint z, uvec2 hidden, inout DecodedSlice slice)
 {
-#define MARK_ROW(r)                                                                                \
-  decoded.Row[r] = MarkRow(                                                                        \
-    decoded.Row[r], ((r) < 8 ? hidden.x : hidden.y) >> (uint(BLOCK_SIDE) * (uint(r) & 7u)));
+  uint bits = (z < 2u ? hidden.x : hidden.y) >> (16u * (z & 1u));
+#define MARK_ROW(y) slice.Row[y] = MarkRow(slice.Row[y], bits >> (uint(BLOCK_SIDE) * uint(y)));
   FOR_ROWS(MARK_ROW)
 }
 #endif
 
-void StoreBlock(uint slot, DecodedBlock decoded)
+// Decodes a block into a slot, which is one of all that this stage and others fill.
+void DecodeInto(uint slot, uint block, uint lane)
 {
-#define STORE_ROW(r) cacheRows[uint(ROWS_PER_BLOCK) * slot + uint(r)] = decoded.Row[r];
-  FOR_ROWS(STORE_ROW)
+  int exponent = DecodeBlock(block, lane);
+#ifdef BUFFER_HIDDEN_COLORS
+  uvec2 hidden = FindHiddenColors(block);
+#endif
+  for (uint z = 0u; z < uint(BLOCK_SIDE); ++z)
+  {
+    DecodedSlice slice = SamplesOfSlice(z, exponent, lane);
+#ifdef BUFFER_HIDDEN_COLORS
+    MarkHidden(z, hidden, slice);
+#endif
+    uint first = uint(ROWS_PER_BLOCK) * slot + uint(BLOCK_SIDE) * z;
+#define STORE_ROW(y) cacheRows[first + uint(y)] = slice.Row[y];
+    FOR_ROWS(STORE_ROW)
+  }
 }
 
 void main()
@@ -87,11 +101,7 @@ void main()
       uint slot = SlotFor(i, block);
       if (slot != NONE)
       {
-        DecodedBlock decoded = DecodeBlock(block, lane);
-#ifdef BUFFER_HIDDEN_COLORS
-        MarkHidden(decoded, FindHiddenColors(block));
-#endif
-        StoreBlock(FirstSlot() + slot, decoded);
+        DecodeInto(FirstSlot() + slot, block, lane);
 #ifdef BUFFER_HIDDEN_CELLS
         cacheRows[HiddenRow(slot)] = uvec4(FindHiddenCells(block), 0u, 0u);
 #endif

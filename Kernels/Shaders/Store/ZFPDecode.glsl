@@ -1,7 +1,7 @@
 // Decodes a 4^3 block of floats of a fixed-rate ZFP stream, bit for bit as libzfp 1.0 does
-// (template/decode.c, decode3.c, codecf.c). One lane decodes one block. Bit planes lie in shared
-// memory, a column for each lane, because they are indexed by a variable; everything else stays in
-// registers, where nothing may be.
+// (template/decode.c, decode3.c, codecf.c). One lane decodes one block. Its bit planes, then its
+// coefficients, lie in shared memory, a column for each lane: what is indexed by a variable cannot
+// stay in registers, and loops that are not unrolled compile in a fraction of the time.
 
 #include "Store/BlockStore.glsl"
 
@@ -9,10 +9,11 @@
 #define ZFP_EXPONENT_BIAS 127
 #define ZFP_NEGABINARY 0xAAAAAAAAu
 
-shared uint zfpPlanes[64u * GROUP_SIZE];
+shared uint zfpWords[uint(SAMPLES_PER_BLOCK) * GROUP_SIZE];
 
-// Place of bit plane k of the first 32 coefficients; that of the other 32 is at 32 + k.
-uint PlaneIndex(uint k, uint lane)
+// Place of word k of a lane's block: bit plane k of the first 32 coefficients, or k - 32 of the
+// others; later coefficient k.
+uint WordIndex(uint k, uint lane)
 {
   return k * GROUP_SIZE + lane;
 }
@@ -67,8 +68,8 @@ void DecodePlanes(inout BitCursor bits, uint budget, uint lane)
     while (budget > 0u && n < 64u && DecodeRun(bits, budget, n, low, high))
     {
     }
-    zfpPlanes[PlaneIndex(k, lane)] = low;
-    zfpPlanes[PlaneIndex(32u + k, lane)] = high;
+    zfpWords[WordIndex(k, lane)] = low;
+    zfpWords[WordIndex(32u + k, lane)] = high;
   }
 }
 
@@ -78,10 +79,12 @@ struct BitMatrix
   uvec4 Word[8];
 };
 
+#define FOR_WORDS(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7)
+
 uvec4 LoadPlanes(uint k, uint lane)
 {
-  return uvec4(zfpPlanes[PlaneIndex(k, lane)], zfpPlanes[PlaneIndex(k + 1u, lane)],
-    zfpPlanes[PlaneIndex(k + 2u, lane)], zfpPlanes[PlaneIndex(k + 3u, lane)]);
+  return uvec4(zfpWords[WordIndex(k, lane)], zfpWords[WordIndex(k + 1u, lane)],
+    zfpWords[WordIndex(k + 2u, lane)], zfpWords[WordIndex(k + 3u, lane)]);
 }
 
 void SwapBits(inout uvec4 a, inout uvec4 b, uint shift, uint mask)
@@ -100,18 +103,27 @@ void SwapBitsWithin(inout uvec4 a)
   a ^= uvec4(t.x << 1, t.x, t.y << 1, t.y);
 }
 
-// Makes coefficients of bit planes: transposes a matrix of 32 x 32 bits by swapping halves.
-BitMatrix TransposePlanes(uint first, uint lane)
+ivec4 FromNegabinary(uvec4 bits)
+{
+  return ivec4((bits ^ ZFP_NEGABINARY) - ZFP_NEGABINARY);
+}
+
+void StoreCoefficients(uint k, uint lane, uvec4 bits)
+{
+  uvec4 words = uvec4(FromNegabinary(bits));
+  zfpWords[WordIndex(k, lane)] = words.x;
+  zfpWords[WordIndex(k + 1u, lane)] = words.y;
+  zfpWords[WordIndex(k + 2u, lane)] = words.z;
+  zfpWords[WordIndex(k + 3u, lane)] = words.w;
+}
+
+// Makes 32 coefficients of their bit planes: transposes a matrix of 32 x 32 bits by swapping
+// halves.
+void TransposePlanes(uint first, uint lane)
 {
   BitMatrix m;
-  m.Word[0] = LoadPlanes(first, lane);
-  m.Word[1] = LoadPlanes(first + 4u, lane);
-  m.Word[2] = LoadPlanes(first + 8u, lane);
-  m.Word[3] = LoadPlanes(first + 12u, lane);
-  m.Word[4] = LoadPlanes(first + 16u, lane);
-  m.Word[5] = LoadPlanes(first + 20u, lane);
-  m.Word[6] = LoadPlanes(first + 24u, lane);
-  m.Word[7] = LoadPlanes(first + 28u, lane);
+#define LOAD_PLANES(i) m.Word[i] = LoadPlanes(first + 4u * uint(i), lane);
+  FOR_WORDS(LOAD_PLANES)
   SwapBits(m.Word[0], m.Word[4], 16u, 0x0000FFFFu);
   SwapBits(m.Word[1], m.Word[5], 16u, 0x0000FFFFu);
   SwapBits(m.Word[2], m.Word[6], 16u, 0x0000FFFFu);
@@ -124,65 +136,37 @@ BitMatrix TransposePlanes(uint first, uint lane)
   SwapBits(m.Word[2], m.Word[3], 4u, 0x0F0F0F0Fu);
   SwapBits(m.Word[4], m.Word[5], 4u, 0x0F0F0F0Fu);
   SwapBits(m.Word[6], m.Word[7], 4u, 0x0F0F0F0Fu);
-  SwapBitsWithin(m.Word[0]);
-  SwapBitsWithin(m.Word[1]);
-  SwapBitsWithin(m.Word[2]);
-  SwapBitsWithin(m.Word[3]);
-  SwapBitsWithin(m.Word[4]);
-  SwapBitsWithin(m.Word[5]);
-  SwapBitsWithin(m.Word[6]);
-  SwapBitsWithin(m.Word[7]);
-  return m;
+#define FINISH_COEFFICIENTS(i)                                                                     \
+  SwapBitsWithin(m.Word[i]);                                                                       \
+  StoreCoefficients(first + 4u * uint(i), lane, m.Word[i]);
+  FOR_WORDS(FINISH_COEFFICIENTS)
 }
 
-// A block's coefficients, then its samples: rows in x direction, with number y + 4 z.
-struct IntegerBlock
-{
-  ivec4 Row[16];
-};
+// Which coefficients a block's rows in x direction have, a byte each, the first one lowest: zfp
+// sorts them by sequency (perm_3). A row has the number y + 4 z.
+const uint PLACES[16] = uint[16](
+  0x11070100u, 0x1A0B0602u, 0x26190E08u, 0x35291D12u,
+  0x1B0C0503u, 0x23140A04u, 0x2D22150Du, 0x3B30241Cu,
+  0x27180F09u, 0x2E211610u, 0x362C2017u, 0x3E372F28u,
+  0x342A1E13u, 0x3A31251Fu, 0x3D38322Bu, 0x3F3C3933u);
 
-ivec4 FromNegabinary(uvec4 bits)
+uvec4 WordsOfRow(uint row, uint lane)
 {
-  return ivec4((bits ^ ZFP_NEGABINARY) - ZFP_NEGABINARY);
+  uvec4 coefficients = (uvec4(PLACES[row]) >> uvec4(0u, 8u, 16u, 24u)) & 0xFFu;
+  return coefficients * GROUP_SIZE + lane;
 }
 
-// Sorts coefficients from the order of increasing sequency (zfp's perm_3) into that of the grid.
-IntegerBlock Reorder(BitMatrix low, BitMatrix high)
+ivec4 LoadRow(uvec4 words)
 {
-  IntegerBlock block;
-  block.Row[0] =
-    FromNegabinary(uvec4(low.Word[0].x, low.Word[0].y, low.Word[1].w, low.Word[4].y));
-  block.Row[1] =
-    FromNegabinary(uvec4(low.Word[0].z, low.Word[1].z, low.Word[2].w, low.Word[6].z));
-  block.Row[2] =
-    FromNegabinary(uvec4(low.Word[2].x, low.Word[3].z, low.Word[6].y, high.Word[1].z));
-  block.Row[3] =
-    FromNegabinary(uvec4(low.Word[4].z, low.Word[7].y, high.Word[2].y, high.Word[5].y));
-  block.Row[4] =
-    FromNegabinary(uvec4(low.Word[0].w, low.Word[1].y, low.Word[3].x, low.Word[6].w));
-  block.Row[5] =
-    FromNegabinary(uvec4(low.Word[1].x, low.Word[2].z, low.Word[5].x, high.Word[0].w));
-  block.Row[6] =
-    FromNegabinary(uvec4(low.Word[3].y, low.Word[5].y, high.Word[0].z, high.Word[3].y));
-  block.Row[7] =
-    FromNegabinary(uvec4(low.Word[7].x, high.Word[1].x, high.Word[4].x, high.Word[6].w));
-  block.Row[8] =
-    FromNegabinary(uvec4(low.Word[2].y, low.Word[3].w, low.Word[6].x, high.Word[1].w));
-  block.Row[9] =
-    FromNegabinary(uvec4(low.Word[4].x, low.Word[5].z, high.Word[0].y, high.Word[3].z));
-  block.Row[10] =
-    FromNegabinary(uvec4(low.Word[5].w, high.Word[0].x, high.Word[3].x, high.Word[5].z));
-  block.Row[11] =
-    FromNegabinary(uvec4(high.Word[2].x, high.Word[3].w, high.Word[5].w, high.Word[7].z));
-  block.Row[12] =
-    FromNegabinary(uvec4(low.Word[4].w, low.Word[7].z, high.Word[2].z, high.Word[5].x));
-  block.Row[13] =
-    FromNegabinary(uvec4(low.Word[7].w, high.Word[1].y, high.Word[4].y, high.Word[6].z));
-  block.Row[14] =
-    FromNegabinary(uvec4(high.Word[2].w, high.Word[4].z, high.Word[6].x, high.Word[7].y));
-  block.Row[15] =
-    FromNegabinary(uvec4(high.Word[4].w, high.Word[6].y, high.Word[7].x, high.Word[7].w));
-  return block;
+  return ivec4(zfpWords[words.x], zfpWords[words.y], zfpWords[words.z], zfpWords[words.w]);
+}
+
+void StoreRow(uvec4 words, ivec4 row)
+{
+  zfpWords[words.x] = uint(row.x);
+  zfpWords[words.y] = uint(row.y);
+  zfpWords[words.z] = uint(row.z);
+  zfpWords[words.w] = uint(row.w);
 }
 
 // Inverts the lifted decorrelating transform (zfp's inv_lift) on four lines of four at once.
@@ -218,79 +202,81 @@ void InverseLiftRows(inout ivec4 a, inout ivec4 b, inout ivec4 c, inout ivec4 d)
   d = ivec4(x.w, y.w, z.w, w.w);
 }
 
-// Along z, y and x, in libzfp's order (inv_xform).
-void InverseTransform(inout IntegerBlock b)
+// The transform along z, which libzfp inverts first (inv_xform): in place.
+void InverseTransformZ(uint lane)
 {
-  InverseLift(b.Row[0], b.Row[4], b.Row[8], b.Row[12]);
-  InverseLift(b.Row[1], b.Row[5], b.Row[9], b.Row[13]);
-  InverseLift(b.Row[2], b.Row[6], b.Row[10], b.Row[14]);
-  InverseLift(b.Row[3], b.Row[7], b.Row[11], b.Row[15]);
-  InverseLift(b.Row[0], b.Row[1], b.Row[2], b.Row[3]);
-  InverseLift(b.Row[4], b.Row[5], b.Row[6], b.Row[7]);
-  InverseLift(b.Row[8], b.Row[9], b.Row[10], b.Row[11]);
-  InverseLift(b.Row[12], b.Row[13], b.Row[14], b.Row[15]);
-  InverseLiftRows(b.Row[0], b.Row[1], b.Row[2], b.Row[3]);
-  InverseLiftRows(b.Row[4], b.Row[5], b.Row[6], b.Row[7]);
-  InverseLiftRows(b.Row[8], b.Row[9], b.Row[10], b.Row[11]);
-  InverseLiftRows(b.Row[12], b.Row[13], b.Row[14], b.Row[15]);
+  for (uint y = 0u; y < uint(BLOCK_SIDE); ++y)
+  {
+    uvec4 at0 = WordsOfRow(y, lane), at1 = WordsOfRow(y + 4u, lane);
+    uvec4 at2 = WordsOfRow(y + 8u, lane), at3 = WordsOfRow(y + 12u, lane);
+    ivec4 a = LoadRow(at0), b = LoadRow(at1), c = LoadRow(at2), d = LoadRow(at3);
+    InverseLift(a, b, c, d);
+    StoreRow(at0, a);
+    StoreRow(at1, b);
+    StoreRow(at2, c);
+    StoreRow(at3, d);
+  }
 }
 
-// The bits of the float i * 2^exponent. Exact even if it or the scale is subnormal, where GPUs may
-// flush floats to zero.
-uint Dequantize(int i, int exponent)
+// All bits where a component is true.
+uvec4 MaskOf(bvec4 chosen)
 {
-  if (exponent >= -126)
-  {
-    precise float value = float(i) * uintBitsToFloat(uint(exponent + 127) << 23);
-    return floatBitsToUint(value);
-  }
-  if (exponent < -149 || i == 0)
-  {
-    return i < 0 ? 0x80000000u : 0u; // libzfp's scale underflows to zero
-  }
-  uint bits = floatBitsToUint(float(i));
-  int biased = int((bits >> 23) & 0xFFu) + exponent;
-  if (biased > 0)
-  {
-    return (bits & 0x807FFFFFu) | (uint(biased) << 23);
-  }
-  // a subnormal result is a whole multiple of 2^-149: an integer in the mantissa
-  uint magnitude = (bits & 0x007FFFFFu) | 0x00800000u;
-  int shift = 1 - biased;
-  return (bits & 0x80000000u) | (shift < 24 ? magnitude >> shift : 0u);
+  return uvec4(0u) - uvec4(chosen);
 }
 
-uvec4 DequantizeRow(ivec4 row, int exponent)
+// The bits of the floats i * 2^exponent for exponents below -126, where GPUs may flush the scale or
+// the result to zero. A subnormal float is a whole multiple of 2^-149: an integer in its mantissa.
+uvec4 DequantizeTiny(ivec4 i, int exponent)
 {
-  return uvec4(Dequantize(row.x, exponent), Dequantize(row.y, exponent),
-    Dequantize(row.z, exponent), Dequantize(row.w, exponent));
+  uvec4 bits = floatBitsToUint(vec4(i));
+  uvec4 mantissa = bits & 0x007FFFFFu;
+  ivec4 biased = ivec4((bits >> 23) & 0xFFu) + exponent;
+  uvec4 normal = mantissa | uvec4(biased) << 23;
+  uvec4 subnormal = (mantissa | 0x00800000u) >> clamp(1 - biased, 0, 31);
+  uvec4 isNormal = MaskOf(greaterThan(biased, ivec4(0)));
+  uvec4 magnitude = (normal & isNormal) | (subnormal & ~isNormal);
+  bool underflows = exponent < -149; // libzfp's scale is zero
+  return (bits & 0x80000000u) | (underflows ? uvec4(0u) : magnitude & MaskOf(notEqual(i, ivec4(0))));
 }
 
-// The bits of a decoded block's floats: rows in x direction, with number y + 4 z.
-struct DecodedBlock
+uvec4 DequantizeRow(ivec4 i, int exponent)
 {
-  uvec4 Row[16];
+  if (exponent < -126)
+  {
+    return DequantizeTiny(i, exponent);
+  }
+  precise vec4 values = vec4(i) * uintBitsToFloat(uint(exponent + 127) << 23);
+  return floatBitsToUint(values);
+}
+
+// Decodes a block but for the transform along y and x, which SamplesOfSlice makes. Returns the
+// exponent of its integers. A block of zeros has no bits.
+int DecodeBlock(uint block, uint lane)
+{
+  BitCursor bits = OpenBlock(block);
+  bool hasBits = ReadBits(bits, 1u) != 0u;
+  int exponent = int(ReadBits(bits, ZFP_EXPONENT_BITS)) - ZFP_EXPONENT_BIAS - 30;
+  DecodePlanes(bits, hasBits ? BlockBits() - 1u - ZFP_EXPONENT_BITS : 0u, lane);
+  for (uint part = 0u; part < 2u; ++part)
+  {
+    TransposePlanes(32u * part, lane);
+  }
+  InverseTransformZ(lane);
+  return exponent;
+}
+
+// The bits of the floats of a block's slice: rows in x direction.
+struct DecodedSlice
+{
+  uvec4 Row[BLOCK_SIDE];
 };
 
-#define FOR_ROWS(DO) \
-  DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7) \
-  DO(8) DO(9) DO(10) DO(11) DO(12) DO(13) DO(14) DO(15)
-
-DecodedBlock DecodeBlock(uint block, uint lane)
+DecodedSlice SamplesOfSlice(uint z, int exponent, uint lane)
 {
-  DecodedBlock decoded;
-  BitCursor bits = OpenBlock(block);
-  if (ReadBits(bits, 1u) == 0u)
-  {
-#define ZERO_ROW(r) decoded.Row[r] = uvec4(0u);
-    FOR_ROWS(ZERO_ROW)
-    return decoded;
-  }
-  int exponent = int(ReadBits(bits, ZFP_EXPONENT_BITS)) - ZFP_EXPONENT_BIAS - 30;
-  DecodePlanes(bits, BlockBits() - 1u - ZFP_EXPONENT_BITS, lane);
-  IntegerBlock integers = Reorder(TransposePlanes(0u, lane), TransposePlanes(32u, lane));
-  InverseTransform(integers);
-#define DEQUANTIZE_ROW(r) decoded.Row[r] = DequantizeRow(integers.Row[r], exponent);
-  FOR_ROWS(DEQUANTIZE_ROW)
-  return decoded;
+  ivec4 a = LoadRow(WordsOfRow(4u * z, lane)), b = LoadRow(WordsOfRow(4u * z + 1u, lane));
+  ivec4 c = LoadRow(WordsOfRow(4u * z + 2u, lane)), d = LoadRow(WordsOfRow(4u * z + 3u, lane));
+  InverseLift(a, b, c, d);
+  InverseLiftRows(a, b, c, d);
+  return DecodedSlice(uvec4[BLOCK_SIDE](DequantizeRow(a, exponent), DequantizeRow(b, exponent),
+    DequantizeRow(c, exponent), DequantizeRow(d, exponent)));
 }
