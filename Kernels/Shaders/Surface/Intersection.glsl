@@ -88,11 +88,14 @@ vec2 Extrema(vec4 b)
   return vec2(min(r0, r1), max(r0, r1));
 }
 
-// Refines the root in [low, high], where the sign changes, by Newton's method; bisects where a step
-// would leave the bracket.
+const float ROOT_RESOLUTION = 1.2e-7; // a float's, just below 1
+
+// Refines the root in [low, high], where the sign changes, by Newton's method, from where the chord
+// of the whole cubic vanishes or else the middle; bisects where a step would leave the bracket.
 float RefineRoot(vec4 b, float low, float high, bool lowInside)
 {
-  float s = 0.5 * (low + high);
+  precise float chord = b.x / (b.x - b.w);
+  float s = high - low == 1.0 ? chord : 0.5 * (low + high);
   for (int i = 0; i < 32; ++i)
   {
     float value = CubicValue(b, s);
@@ -105,8 +108,9 @@ float RefineRoot(vec4 b, float low, float high, bool lowInside)
       high = s;
     }
     precise float next = s - value / (3.0 * CubicSlope(b, s));
-    next = next > low && next < high ? next : 0.5 * (low + high);
-    if (abs(next - s) <= 1.2e-7 || high - low <= 1.2e-7) // a float's resolution there
+    bool stays = next >= low && next <= high; // a step that has converged ends at an end
+    next = stays ? next : 0.5 * (low + high);
+    if ((stays && abs(next - s) <= ROOT_RESOLUTION) || high - low <= ROOT_RESOLUTION)
     {
       return next;
     }
@@ -115,7 +119,9 @@ float RefineRoot(vec4 b, float low, float high, bool lowInside)
   return s;
 }
 
-// The cubic's three monotonic pieces, parted by its extrema, and which of their ends are inside.
+// The cubic's three monotonic pieces, parted by its extrema, and which of their ends are inside. If
+// its coefficients change sides but once, it has one root, by Descartes' rule of signs: then all of
+// it is the first piece, and the others are empty.
 struct Pieces
 {
   vec2 Turn;
@@ -130,7 +136,8 @@ bool FindPieces(vec4 b, out Pieces pieces)
   {
     return false;
   }
-  vec2 turn = Extrema(b);
+  bool once = inside.x != inside.w && (inside.y == inside.x || inside.z == inside.w);
+  vec2 turn = once ? vec2(1.0) : Extrema(b);
   pieces.Turn = turn;
   pieces.Inside.x = inside.x;
   pieces.Inside.y = turn.x < 1.0 ? Inside(CubicValue(b, turn.x)) : inside.w;
