@@ -54,6 +54,13 @@ bool OffersFastSparseBuffers(const std::set<std::string>& offered)
     glBufferPageCommitmentARB && Names(GL_VENDOR, { "NVIDIA" });
 }
 
+// NVIDIA's GPUs add and compare them in two instructions. Mesa breaks them up for Intel's, into more
+// than pairs of words take, and llvmpipe takes longer over them, too.
+bool OffersFastIntegers64(const std::set<std::string>& offered)
+{
+  return offered.count("GL_ARB_gpu_shader_int64") > 0 && Names(GL_VENDOR, { "NVIDIA" });
+}
+
 std::int64_t AskSparsePage()
 {
   GLint bytes = 0;
@@ -98,16 +105,17 @@ Status Context::CheckVersion()
   GLint major = 0, minor = 0;
   glGetIntegerv(GL_MAJOR_VERSION, &major);
   glGetIntegerv(GL_MINOR_VERSION, &minor);
-  this->ByExtensions = major * 10 + minor < 43;
+  this->Dialect.ByExtensions = major * 10 + minor < 43;
   const std::set<std::string> offered = OfferedExtensions();
   for (const std::string& extension : RequiredExtensions())
   {
-    if (this->ByExtensions && !offered.count(extension))
+    if (this->Dialect.ByExtensions && !offered.count(extension))
     {
       return Status::Error("needs OpenGL 4.3 (compute shaders), but this context offers ", major,
         ".", minor, " without ", extension, ": use a newer driver, or Mesa's llvmpipe");
     }
   }
+  this->Dialect.Integers64 = OffersFastIntegers64(offered);
   return Status();
 }
 

@@ -5,6 +5,7 @@
 #define Context_h
 
 #include "GL/DeviceLimits.h"
+#include "Shaders/ShaderAssembler.h"
 
 #include "Status.h"
 
@@ -20,7 +21,7 @@ public:
   void Close();
 
   /// Is the context older than OpenGL 4.3, but offers what we need as extensions?
-  bool UsesExtensions() const { return this->ByExtensions; }
+  const ShaderDialect& GetDialect() const { return this->Dialect; }
   const DeviceLimits& GetLimits() const { return this->Limits; }
   /// Lowers the largest buffer to so many bytes; 0 restores what OpenGL allows.
   void LimitBuffers(std::int64_t bytes);
@@ -43,7 +44,7 @@ private:
 
   DeviceLimits Limits;
   std::int64_t LargestAllowed = 0; ///< bytes of a buffer
-  bool ByExtensions = false;
+  ShaderDialect Dialect;
   Status FirstError;
 };
 

@@ -74,7 +74,7 @@ void GLAPIENTRY CountError(
 }
 
 std::shared_ptr<ProgramCache> ProgramCache::OfContext(
-  std::uint64_t contextId, bool byExtensions, const DeviceLimits& limits)
+  std::uint64_t contextId, const ShaderDialect& dialect, const DeviceLimits& limits)
 {
   static std::map<std::uint64_t, std::weak_ptr<ProgramCache>> contexts;
   static std::mutex mutex; // windows may be rendered by threads of their own
@@ -86,14 +86,14 @@ std::shared_ptr<ProgramCache> ProgramCache::OfContext(
     {
       entry = entry->second.expired() ? contexts.erase(entry) : std::next(entry);
     }
-    programs = std::make_shared<ProgramCache>(byExtensions, limits.BackgroundCompiler);
+    programs = std::make_shared<ProgramCache>(dialect, limits.BackgroundCompiler);
     contexts[contextId] = programs;
   }
   return programs;
 }
 
-ProgramCache::ProgramCache(bool byExtensions, bool inBackground)
-  : ByExtensions(byExtensions)
+ProgramCache::ProgramCache(const ShaderDialect& dialect, bool inBackground)
+  : Dialect(dialect)
   , InBackground(inBackground)
 {
   if (inBackground)
@@ -193,7 +193,7 @@ std::vector<ProgramCache::Shader> ProgramCache::Assemble(Stage stage, const Scen
 {
   const StageInfo& info = InfoOf(stage);
   const auto assemble = [&](GLenum type, const char* file) -> Shader {
-    return { type, AssembleShader(info, file, needs, this->ByExtensions) };
+    return { type, AssembleShader(info, file, needs, this->Dialect) };
   };
   std::vector<Shader> shaders;
   if (info.Draws())

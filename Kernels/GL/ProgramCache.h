@@ -34,9 +34,9 @@ public:
   /// The programs of the current context, which `contextId` identifies. The caller keeps them
   /// alive; the last owner must call Release() with the context current.
   static std::shared_ptr<ProgramCache> OfContext(
-    std::uint64_t contextId, bool byExtensions, const DeviceLimits& limits);
+    std::uint64_t contextId, const ShaderDialect& dialect, const DeviceLimits& limits);
 
-  ProgramCache(bool byExtensions, bool inBackground);
+  ProgramCache(const ShaderDialect& dialect, bool inBackground);
   ProgramCache(const ProgramCache&) = delete;
   void operator=(const ProgramCache&) = delete;
 
@@ -87,7 +87,7 @@ private:
   /// By stage and features of the scene.
   std::map<std::pair<Stage, std::uint32_t>, std::shared_ptr<Program>> Programs;
   std::map<std::string, std::shared_ptr<Program>> BySource; ///< scenes may have the same
-  bool ByExtensions;    ///< the context is older than 4.3 but offers what we need
+  ShaderDialect Dialect;
   bool InBackground;    ///< the driver compiles in threads of its own
   int SlowRequests = 0; ///< took so long that the driver seems to compile in them
   bool CountsErrors = false;

@@ -221,7 +221,7 @@ protected:
     this->Window->SetSize(16, 16);
     this->Window->Render();
     ASSERT_TRUE(this->Gl.Open()) << this->Gl.GetStatus().GetMessage();
-    this->Programs = std::make_unique<ProgramCache>(this->Gl.UsesExtensions(), false);
+    this->Programs = std::make_unique<ProgramCache>(this->Gl.GetDialect(), false);
   }
   void TearDown() override { this->Programs->Release(); }
 

@@ -27,9 +27,9 @@ std::string MacroName(const char* name)
   return macro;
 }
 
-void WriteVersion(std::ostream& out, bool compute, bool byExtensions)
+void WriteVersion(std::ostream& out, bool compute, const ShaderDialect& dialect)
 {
-  if (!byExtensions)
+  if (!dialect.ByExtensions)
   {
     out << "#version 430\n";
     return;
@@ -41,6 +41,16 @@ void WriteVersion(std::ostream& out, bool compute, bool byExtensions)
     const bool named = extension != "GL_ARB_clear_buffer_object" &&
       extension != "GL_ARB_timer_query" && (compute || extension != "GL_ARB_compute_shader");
     out << (named ? "#extension " + extension + " : require\n" : "");
+  }
+}
+
+// A text that can use integers of 64 bits mentions the macro.
+void UseIntegers64(std::ostream& out, const std::string& text, const ShaderDialect& dialect)
+{
+  const std::string macro = "NATIVE_INT64";
+  if (dialect.Integers64 && text.find(macro) != std::string::npos)
+  {
+    out << "#extension GL_ARB_gpu_shader_int64 : require\n#define " << macro << "\n";
   }
 }
 
@@ -245,7 +255,8 @@ const std::vector<std::string>& RequiredExtensions()
 }
 
 AssembledShader AssembleShader(const StageInfo& stage, const std::string& file,
-  const SceneNeeds& needs, bool byExtensions, const ShaderFiles& files)
+  const SceneNeeds& needs, const ShaderDialect& dialect,
+  const ShaderFiles& files)
 {
   Definitions definitions;
   DefineGroupSizes(definitions, stage);
@@ -255,7 +266,8 @@ AssembledShader AssembleShader(const StageInfo& stage, const std::string& file,
   Paster paster(files, needs.Cached ? "Cache/CachedBlocks.glsl" : "Cache/DecodedVolume.glsl");
   paster.Paste(file);
   std::ostringstream header;
-  WriteVersion(header, !stage.Draws(), byExtensions);
+  WriteVersion(header, !stage.Draws(), dialect);
+  UseIntegers64(header, paster.GetText(), dialect);
   definitions.Write(header, paster.GetText());
   if (!stage.Draws())
   {

@@ -20,6 +20,13 @@ const ShaderFiles& ShaderSources();
 /// What an OpenGL context older than 4.3 must offer instead, by name.
 const std::vector<std::string>& RequiredExtensions();
 
+/// The GLSL that an OpenGL context understands.
+struct ShaderDialect
+{
+  bool ByExtensions = false; ///< older than 4.3, but with all that we need
+  bool Integers64 = false;   ///< of the GPU's own, which are faster than pairs of words
+};
+
 /// Lines of a text that come one after the other from a file.
 struct ShaderSection
 {
@@ -38,7 +45,8 @@ struct AssembledShader
 constexpr const char* ViewportShader = "Output/Viewport.vert";
 
 /// Assembles a file of a stage from
-/// - the version: 4.30, or 1.50 with the required extensions,
+/// - the version: 4.30, or 1.50 with the required extensions; and integers of 64 bits if it can use
+///   them,
 /// - those of the following macros that it mentions, so that scenes which differ in others only
 ///   have the same shader:
 ///   - GROUP_SIZE, and of every stage <STAGE>_GROUP_SIZE,
@@ -50,7 +58,8 @@ constexpr const char* ViewportShader = "Output/Viewport.vert";
 /// - the file itself. `#include "X"` pastes X once; `#include BLOCK_ACCESS` the file that knows
 ///   how this scene's decoded blocks are found.
 AssembledShader AssembleShader(const StageInfo& stage, const std::string& file,
-  const SceneNeeds& needs, bool byExtensions, const ShaderFiles& files = ShaderSources());
+  const SceneNeeds& needs, const ShaderDialect& dialect,
+  const ShaderFiles& files = ShaderSources());
 
 /// Replaces the places in a shader's text that begin the lines of a compiler's log by file and
 /// line. Understands "0:14(5): …" (Mesa) and "0(14) : …" (NVIDIA). No #line directives are needed

@@ -79,7 +79,7 @@ std::string WithoutAtomics(std::string text)
 AssembledShader Assemble(
   const StageInfo& stage, const SceneNeeds& needs, const ShaderFiles& files = ShaderSources())
 {
-  return AssembleShader(stage, stage.File, needs, false, files);
+  return AssembleShader(stage, stage.File, needs, {}, files);
 }
 
 // The compiler's log; empty if the shader compiles.
@@ -141,7 +141,7 @@ bool CompilesAlone(const StageInfo& stage, const std::string& file)
       const std::vector<ShaderSection> sections = Assemble(stage, needs).Sections;
       const bool included = std::any_of(sections.begin(), sections.end(),
         [&file](const ShaderSection& section) { return section.File == file; });
-      AssembledShader shader = AssembleShader(stage, file, needs, false);
+      AssembledShader shader = AssembleShader(stage, file, needs, {});
       shader.Text.insert(shader.Text.find('\n') + 1, DefinitionsOf(stage));
       return included && Compile(stage, shader).empty();
     });
@@ -269,7 +269,7 @@ TEST_F(Shaders, CompileWithExtensions)
     {
       if (stage.IsNeeded(needs))
       {
-        const AssembledShader source = AssembleShader(stage, stage.File, needs, true);
+        const AssembledShader source = AssembleShader(stage, stage.File, needs, { true, false });
         EXPECT_EQ(Compile(stage, source), "") << stage.Name;
       }
     }

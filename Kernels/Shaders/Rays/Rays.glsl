@@ -26,13 +26,13 @@ struct Ray
   Wide Enter, Leave; // parameters between which the ray is in the part that is drawn
 };
 
-const Wide WAY = Wide(1 << (WAY_BITS - 32), 0u);
+const Wide WAY = WIDE(1 << (WAY_BITS - 32), 0u);
 // Planes of which not two are met: any spacing from here on is as good.
-const Wide WIDEST_SPACING = Wide(1 << (WAY_BITS - 31), 0u);
+const Wide WIDEST_SPACING = WIDE(1 << (WAY_BITS - 31), 0u);
 // Behind the way's end, by half of it: a plane there is never met.
-const Wide NEVER_MET = Wide(3 << (WAY_BITS - 33), 0u);
+const Wide NEVER_MET = WIDE(3 << (WAY_BITS - 33), 0u);
 // Beyond all that a ray is compared with, and no sum of two wraps.
-const Wide FARTHEST = Wide(1 << 29, 0u);
+const Wide FARTHEST = WIDE(1 << 29, 0u);
 
 // -1 on each axis on which the ray goes backwards, else 0.
 ivec3 IsBackwards(Ray ray)
@@ -64,7 +64,7 @@ Wide3 GainOf(ivec3 high, uvec3 low, uvec3 least, uint halves)
 {
   uvec3 carried, unused;
   umulExtended(least, uvec3(halves), carried, unused);
-  return Sum(Product(Wide3(high, low), uvec3(halves)), Wide3(ivec3(0), carried));
+  return Sum(Product(WideOf(high, low), uvec3(halves)), WideOf(ivec3(0), carried));
 }
 
 Wide3 AtPixel(FixedPixelVector vector, uvec2 place)
@@ -72,7 +72,7 @@ Wide3 AtPixel(FixedPixelVector vector, uvec2 place)
   uvec2 halves = 2u * place + 1u;
   Wide3 x = GainOf(vector.PerXHigh, vector.PerXLow, vector.PerXLeast, halves.x);
   Wide3 y = GainOf(vector.PerYHigh, vector.PerYLow, vector.PerYLeast, halves.y);
-  return Sum(Wide3(vector.BaseHigh, vector.BaseLow), Sum(x, y));
+  return Sum(WideOf(vector.BaseHigh, vector.BaseLow), Sum(x, y));
 }
 
 RayLine LineOf(uint pixel)
@@ -92,10 +92,10 @@ struct Speed
 Speed SpeedOf(Wide3 way)
 {
   Speed speed;
-  speed.Backwards = way.High >> 31;
+  speed.Backwards = AreNegative(way);
   Wide3 absolute = Negated(way, speed.Backwards);
   // a plane to which the ray is parallel is met beyond all others
-  absolute.Low |= uvec3(AreEqual(absolute, Wide(0, 0u)));
+  absolute = LargerOf(absolute, AllOf(WIDE(0, 1u)));
   speed.Zeros = LeadingZeros(absolute);
   speed.Inverse = Reciprocal(ShiftLeft(absolute, speed.Zeros));
   return speed;
@@ -105,13 +105,13 @@ Speed SpeedOf(Wide3 way)
 // the way.
 Wide3 ReachedAt(Speed speed, Wide3 change)
 {
-  ivec3 before = (change.High >> 31) ^ speed.Backwards;
-  Wide3 scaled = HighProduct(Negated(change, change.High >> 31), speed.Inverse);
+  ivec3 negative = AreNegative(change);
+  Wide3 scaled = HighProduct(Negated(change, negative), speed.Inverse);
   // in eighths, so that no shift goes to the right
   ivec3 bits = speed.Zeros - (126 - 64 - WAY_BITS - 3);
   ivec3 far = -ivec3(lessThan(LeadingZeros(scaled) - bits, ivec3(3)));
   Wide3 t = Halved(ShiftLeft(scaled, bits), 3);
-  return Negated(Choose(t, AllOf(FARTHEST), far), before);
+  return Negated(Choose(t, AllOf(FARTHEST), far), negative ^ speed.Backwards);
 }
 
 // From a plane of voxels to the next.
@@ -125,23 +125,22 @@ Wide3 SpacingOf(Speed speed)
 
 Wide3 ChangeToPlanes(RayLine line, ivec3 index)
 {
-  return Difference(Wide3(index, uvec3(0u)), line.Origin);
+  return Difference(WideOf(index, uvec3(0u)), line.Origin);
 }
 
 // The place of a ray at a parameter from 0 to 2^WAY_BITS.
 Wide3 PlaceAt(RayLine line, Wide t)
 {
   const int bits = 63 - WAY_BITS; // 64 would be one too many at the end of the way
-  Wide scaled = Wide(t.High << bits | int(t.Low >> (32 - bits)), t.Low << bits);
-  ivec3 negative = line.Way.High >> 31;
-  Wide3 halfOfGain = HighProduct(Negated(line.Way, negative), AllOf(scaled));
+  ivec3 negative = AreNegative(line.Way);
+  Wide3 halfOfGain = HighProduct(Negated(line.Way, negative), AllOf(Doubled(t, bits)));
   return Sum(line.Origin, Negated(ShiftLeft(halfOfGain, ivec3(1)), negative));
 }
 
 // Within a cell, from 0 to 1 between its planes.
 vec3 PlaceInCell(Wide3 place, ivec3 cell)
 {
-  return clamp(vec3(place.High - cell) + vec3(place.Low) * (1.0 / TWO_TO_32), 0.0, 1.0);
+  return clamp(vec3(HighOf(place) - cell) + vec3(LowOf(place)) * (1.0 / TWO_TO_32), 0.0, 1.0);
 }
 
 #ifdef CLIPPED
@@ -152,7 +151,7 @@ void ClipRay(inout Ray ray, uint pixel)
   {
     Wide3 distance = AtPixel(view.ClippingOrigin[i], place);
     Speed speed = SpeedOf(AtPixel(view.ClippingWay[i], place));
-    Wide3 t = ReachedAt(speed, Difference(Wide3(ivec3(0), uvec3(0u)), distance));
+    Wide3 t = ReachedAt(speed, Difference(AllOf(WIDE(0, 0u)), distance));
     Wide3 enter = Choose(t, AllOf(ray.Enter), speed.Backwards);
     Wide3 leave = Choose(AllOf(ray.Leave), t, speed.Backwards);
     ray.Enter = LargerOf(ray.Enter, LargestOf(enter));
@@ -193,17 +192,17 @@ ivec3 LastPlanes(Speed speed)
 Wide EnterT(RayLine line, Speed speed)
 {
   ivec3 planes = Choose(view.FirstDrawn, view.LastDrawn, speed.Backwards);
-  return LargerOf(Wide(0, 0u), LargestOf(ReachedAt(speed, ChangeToPlanes(line, planes))));
+  return LargerOf(WIDE(0, 0u), LargestOf(ReachedAt(speed, ChangeToPlanes(line, planes))));
 }
 
 // A ray that is outside where it should enter has left through other planes before; rounding by
 // some units does not count.
 bool IsDrawnAt(Wide3 place)
 {
-  const Wide3 rounding = AllOf(Wide(0, 16u));
-  Wide3 sinceFirst = Difference(Sum(place, rounding), Wide3(view.FirstDrawn, uvec3(0u)));
-  Wide3 untilLast = Difference(Wide3(view.LastDrawn, uvec3(0u)), Difference(place, rounding));
-  return all(greaterThanEqual(sinceFirst.High | untilLast.High, ivec3(0)));
+  Wide3 rounding = AllOf(WIDE(0, 16u));
+  Wide3 sinceFirst = Difference(Sum(place, rounding), WideOf(view.FirstDrawn, uvec3(0u)));
+  Wide3 untilLast = Difference(WideOf(view.LastDrawn, uvec3(0u)), Difference(place, rounding));
+  return (AreNegative(sinceFirst) | AreNegative(untilLast)) == ivec3(0);
 }
 
 // Places the planes of all cells, from those through which the ray leaves its first cell: `next`.
@@ -244,10 +243,10 @@ Ray CameraRay(uint pixel)
   Wide3 place = PlaceAt(line, SmallerOf(ray.Enter, WAY));
   if (IsLess(ray.Leave, ray.Enter) || !IsDrawnAt(place))
   {
-    ray.Leave = Difference(ray.Enter, Wide(0, 1u));
+    ray.Leave = Difference(ray.Enter, WIDE(0, 1u));
     return ray;
   }
-  ray.FirstCell = clamp(place.High, view.FirstDrawn, view.LastDrawn - 1);
+  ray.FirstCell = clamp(HighOf(place), view.FirstDrawn, view.LastDrawn - 1);
   vec3 begin = PlaceInCell(place, ray.FirstCell);
   ray.Begin = mix(begin, 1.0 - begin, notEqual(speed.Backwards, ivec3(0)));
   ivec3 next = ray.FirstCell + (1 + ray.Step) / 2;
@@ -342,10 +341,10 @@ uint Speculation(uint rays)
 // ---- hit keys: the upper bits of the parameter
 uint HitKey(Wide t)
 {
-  Wide last = Difference(WAY, Wide(0, 1u));
-  Wide at = SmallerOf(LargerOf(t, Wide(0, 0u)), last);
+  Wide last = Difference(WAY, WIDE(0, 1u));
+  Wide at = SmallerOf(LargerOf(t, WIDE(0, 0u)), last);
   const int bits = WAY_BITS - KEY_BITS;
-  uint key = uint(at.High) << (32 - bits) | at.Low >> bits;
+  uint key = uint(HighOf(at)) << (32 - bits) | LowOf(at) >> bits;
   return min(key, NO_HIT - 1u);
 }
 
@@ -353,5 +352,5 @@ uint HitKey(Wide t)
 Wide HitT(uint key)
 {
   const int bits = WAY_BITS - KEY_BITS;
-  return Wide(int(key >> (32 - bits)), key << bits | 1u << (bits - 1));
+  return WideOf(int(key >> (32 - bits)), key << bits | 1u << (bits - 1));
 }

@@ -38,7 +38,7 @@ void CrossPlanes(
   ivec3 step, Wide3 spacing, ivec3 crossed, inout ivec3 element, inout Wide3 exits)
 {
   element += step & crossed;
-  exits = Sum(exits, Wide3(spacing.High & crossed, spacing.Low & uvec3(crossed)));
+  exits = Sum(exits, Masked(spacing, crossed));
 }
 
 // Moves an element over those of the next three planes on each axis that the ray meets up to

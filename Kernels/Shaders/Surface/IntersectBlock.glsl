@@ -108,7 +108,7 @@ vec3 PlaceAlong(Ray ray, Wide3 entries, Wide t)
 {
   vec3 sinceEntry = ToFloat(Difference(AllOf(t), entries)) * ray.CellsPerT;
   vec3 sinceBegin = ray.Begin + ToFloat(Difference(t, ray.Enter)) * ray.CellsPerT;
-  bvec3 inFirst = lessThan(Difference(entries, AllOf(ray.Enter)).High, ivec3(0));
+  bvec3 inFirst = AreLess(entries, AllOf(ray.Enter));
   return clamp(mix(sinceEntry, sinceBegin, inFirst), 0.0, 1.0);
 }
 

@@ -20,7 +20,7 @@ SurfacePoint PointOf(RayLine line, uint key)
 {
   Wide3 place = PlaceAt(line, HitT(key));
   SurfacePoint hit;
-  hit.Cell = clamp(place.High, ivec3(0), volume.Samples - 2);
+  hit.Cell = clamp(HighOf(place), ivec3(0), volume.Samples - 2);
   hit.Local = PlaceInCell(place, hit.Cell);
   return hit;
 }
