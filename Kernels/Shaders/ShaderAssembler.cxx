@@ -44,6 +44,12 @@ void WriteVersion(std::ostream& out, bool compute, const ShaderDialect& dialect)
   }
 }
 
+// NVIDIA's compiler takes its time over unrolled loops, and no stage is faster for them.
+void ForbidUnrolling(std::ostream& out)
+{
+  out << "#pragma optionNV(unroll none)\n";
+}
+
 // A text that can use integers of 64 bits mentions the macro.
 void UseIntegers64(std::ostream& out, const std::string& text, const ShaderDialect& dialect)
 {
@@ -268,6 +274,7 @@ AssembledShader AssembleShader(const StageInfo& stage, const std::string& file,
   std::ostringstream header;
   WriteVersion(header, !stage.Draws(), dialect);
   UseIntegers64(header, paster.GetText(), dialect);
+  ForbidUnrolling(header);
   definitions.Write(header, paster.GetText());
   if (!stage.Draws())
   {
