@@ -54,8 +54,8 @@ bool OffersFastSparseBuffers(const std::set<std::string>& offered)
     glBufferPageCommitmentARB && Names(GL_VENDOR, { "NVIDIA" });
 }
 
-// NVIDIA's GPUs add and compare them in two instructions. Mesa breaks them up for Intel's, into more
-// than pairs of words take, and llvmpipe takes longer over them, too.
+// NVIDIA's GPUs add and compare them in two instructions. Mesa breaks them up for Intel's, into
+// more than pairs of words take, and llvmpipe takes longer over them, too.
 bool OffersFastIntegers64(const std::set<std::string>& offered)
 {
   return offered.count("GL_ARB_gpu_shader_int64") > 0 && Names(GL_VENDOR, { "NVIDIA" });

@@ -44,8 +44,7 @@ Status Device::Initialize(std::uint64_t contextId)
   {
     return this->Gl.GetStatus();
   }
-  this->Programs =
-    ProgramCache::OfContext(contextId, this->Gl.GetDialect(), this->Gl.GetLimits());
+  this->Programs = ProgramCache::OfContext(contextId, this->Gl.GetDialect(), this->Gl.GetLimits());
   this->Programs->CountGLErrors();
   this->Timer.SetSoftware(this->Gl.GetLimits().Software);
   this->Uniforms.Initialize();

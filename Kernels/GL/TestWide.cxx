@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) ProgIso contributors
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs the functions of Wide.glsl on random numbers, once with pairs of words and once with OpenGL's
-// own integers of 64 bits: both must give the same bits, and those of C++ where it has the function.
+// Runs the functions of Wide.glsl on random numbers, once with pairs of words and once with
+// OpenGL's own integers of 64 bits: both must give the same bits, and those of C++ where it has the
+// function.
 #include "GL/Context.h"
 #include "GL/ProgIsoGL.h"
 #include "GL/ProgramCache.h"
@@ -140,8 +141,8 @@ protected:
     GLuint buffers[2] = {};
     glGenBuffers(2, buffers);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffers[0]);
-    glBufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(given.size() * sizeof(Arguments)),
-      given.data(), GL_STATIC_DRAW);
+    glBufferData(GL_SHADER_STORAGE_BUFFER,
+      static_cast<GLsizeiptr>(given.size() * sizeof(Arguments)), given.data(), GL_STATIC_DRAW);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, buffers[1]);
     const auto bytes = static_cast<GLsizeiptr>(results.size() * sizeof(Words));
     glBufferData(GL_SHADER_STORAGE_BUFFER, bytes, nullptr, GL_STATIC_READ);
@@ -161,8 +162,7 @@ protected:
   {
     const std::vector<Words> pairs = Run(ShaderText(expression, false), given);
     const std::vector<Words> own = Run(ShaderText(expression, true), given);
-    EXPECT_EQ(0, std::memcmp(pairs.data(), own.data(), pairs.size() * sizeof(Words)))
-      << expression;
+    EXPECT_EQ(0, std::memcmp(pairs.data(), own.data(), pairs.size() * sizeof(Words))) << expression;
     std::vector<Integers> values(pairs.size());
     std::transform(pairs.begin(), pairs.end(), values.begin(), ToIntegers);
     return values;

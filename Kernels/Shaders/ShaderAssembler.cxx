@@ -261,8 +261,7 @@ const std::vector<std::string>& RequiredExtensions()
 }
 
 AssembledShader AssembleShader(const StageInfo& stage, const std::string& file,
-  const SceneNeeds& needs, const ShaderDialect& dialect,
-  const ShaderFiles& files)
+  const SceneNeeds& needs, const ShaderDialect& dialect, const ShaderFiles& files)
 {
   Definitions definitions;
   DefineGroupSizes(definitions, stage);
