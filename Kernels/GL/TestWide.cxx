@@ -41,7 +41,7 @@ struct Arguments
 
 constexpr int Cases = 4096;
 
-Words ToWords(const Integers& values)
+Words WordsOf(const Integers& values)
 {
   Words words = {};
   for (int i = 0; i < 3; ++i)
@@ -52,7 +52,7 @@ Words ToWords(const Integers& values)
   return words;
 }
 
-Integers ToIntegers(const Words& words)
+Integers IntegersOf(const Words& words)
 {
   Integers values = {};
   for (int i = 0; i < 3; ++i)
@@ -101,7 +101,7 @@ std::vector<Arguments> RandomArguments(int bits, bool negative)
       value = static_cast<std::int64_t>(random() >> (64 - bits + random() % 8 * (bits / 8)));
       value = negative && random() % 2 ? -value : value;
     }
-    return ToWords(values);
+    return WordsOf(values);
   };
   for (Arguments& arguments : given)
   {
@@ -164,7 +164,7 @@ protected:
     const std::vector<Words> own = Run(ShaderText(expression, true), given);
     EXPECT_EQ(0, std::memcmp(pairs.data(), own.data(), pairs.size() * sizeof(Words))) << expression;
     std::vector<Integers> values(pairs.size());
-    std::transform(pairs.begin(), pairs.end(), values.begin(), ToIntegers);
+    std::transform(pairs.begin(), pairs.end(), values.begin(), IntegersOf);
     return values;
   }
 
@@ -174,7 +174,7 @@ protected:
     const std::vector<Integers> results = Evaluate(expression, given);
     for (std::size_t i = 0; i < given.size(); ++i)
     {
-      const Integers a = ToIntegers(given[i].A), b = ToIntegers(given[i].B);
+      const Integers a = IntegersOf(given[i].A), b = IntegersOf(given[i].B);
       for (int axis = 0; axis < 3; ++axis)
       {
         ASSERT_EQ(results[i][axis], expected(a[axis], b[axis]))
@@ -224,7 +224,7 @@ TEST_F(WideNumbers, TellTheLeastOfThree)
     Evaluate("Masked(a, -ivec3(AreEqual(a, SmallestOf(b))))", given);
   for (std::size_t i = 0; i < given.size(); ++i)
   {
-    const Integers a = ToIntegers(given[i].A), b = ToIntegers(given[i].B);
+    const Integers a = IntegersOf(given[i].A), b = IntegersOf(given[i].B);
     const std::int64_t of = *std::min_element(b.begin(), b.end());
     ASSERT_EQ(least[i][0], *std::min_element(a.begin(), a.end()));
     ASSERT_EQ(largest[i][0], *std::max_element(a.begin(), a.end()));
@@ -257,7 +257,7 @@ TEST_F(WideNumbers, MultiplyAndDivideAlike)
     Evaluate("Reciprocal(ShiftLeft(a, LeadingZeros(LargerOf(a, AllOf(WIDE(0, 1u))))))", given);
   for (std::size_t i = 0; i < given.size(); ++i)
   {
-    const Integers a = ToIntegers(given[i].A), b = ToIntegers(given[i].B);
+    const Integers a = IntegersOf(given[i].A), b = IntegersOf(given[i].B);
     for (int axis = 0; axis < 3; ++axis)
     {
       const double product = std::ldexp(static_cast<double>(a[axis]), -64) * b[axis];
@@ -280,7 +280,7 @@ TEST_F(WideNumbers, BecomeTheSameFloats)
   const std::vector<Integers> back = Evaluate("AllOf(ToWide(ToFloat(a).x))", given);
   for (std::size_t i = 0; i < given.size(); ++i)
   {
-    const auto a = static_cast<double>(ToIntegers(given[i].A)[0]);
+    const auto a = static_cast<double>(IntegersOf(given[i].A)[0]);
     ASSERT_NEAR(static_cast<double>(back[i][0]), a, 1.0 + 2e-7 * a);
   }
 }
