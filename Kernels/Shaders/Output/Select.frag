@@ -20,7 +20,8 @@ layout(location = 0) out vec4 fragmentColor;
 uvec3 SelectedAt(uint pixel, float t)
 {
   Wide3 place = PlaceAt(LineOf(pixel), AtDepth(t));
-  ivec3 halves = 2 * HighOf(place) + ivec3(LowOf(place) >> 31) + isCentred; // from the first point on
+  // from the first point on
+  ivec3 halves = 2 * HighOf(place) + ivec3(LowOf(place) >> 31) + isCentred;
   ivec3 at = firstSample + (halves + ofPoints >> 1);
   return uvec3(clamp(at, ivec3(0), ids - 1));
 }

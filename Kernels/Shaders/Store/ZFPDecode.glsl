@@ -235,8 +235,9 @@ uvec4 DequantizeTiny(ivec4 i, int exponent)
   uvec4 subnormal = (mantissa | 0x00800000u) >> clamp(1 - biased, 0, 31);
   uvec4 isNormal = MaskOf(greaterThan(biased, ivec4(0)));
   uvec4 magnitude = (normal & isNormal) | (subnormal & ~isNormal);
+  magnitude &= MaskOf(notEqual(i, ivec4(0)));
   bool underflows = exponent < -149; // libzfp's scale is zero
-  return (bits & 0x80000000u) | (underflows ? uvec4(0u) : magnitude & MaskOf(notEqual(i, ivec4(0))));
+  return (bits & 0x80000000u) | (underflows ? uvec4(0u) : magnitude);
 }
 
 uvec4 DequantizeRow(ivec4 i, int exponent)
