@@ -5,12 +5,56 @@
 #include "Codec/BlockGeometry.h"
 
 #include "vtkDataArray.h"
+#include "vtkInformation.h"
+#include "vtkObjectFactory.h"
 #include "vtkTypeUInt64Array.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace
 {
+// Runs as tuples. VTK asks arrays of tuples for the range of their lengths, and writes it into
+// files. It squares and adds integers as such, which may overflow to a length that is not a number;
+// no VTK reads such files without an error. To everybody else this is a vtkTypeUInt64Array.
+class RunArray : public vtkTypeUInt64Array
+{
+public:
+  static RunArray* New() { VTK_STANDARD_NEW_BODY(RunArray); }
+
+protected:
+  vtkObjectBase* NewInstanceInternal() const override { return RunArray::New(); }
+
+  ///@{
+  // Field data have no ghosts.
+  bool ComputeVectorRange(double range[2]) override { return this->FindLengths(range); }
+  bool ComputeVectorRange(double range[2], const unsigned char*, unsigned char) override
+  {
+    return this->FindLengths(range);
+  }
+  bool ComputeFiniteVectorRange(double range[2]) override { return this->FindLengths(range); }
+  bool ComputeFiniteVectorRange(double range[2], const unsigned char*, unsigned char) override
+  {
+    return this->FindLengths(range);
+  }
+  ///@}
+
+private:
+  bool FindLengths(double range[2])
+  {
+    range[0] = std::numeric_limits<double>::max();
+    range[1] = 0.0;
+    for (vtkIdType i = 0; i < this->GetNumberOfTuples(); ++i)
+    {
+      const double length = std::hypot(this->GetComponent(i, 0), this->GetComponent(i, 1));
+      range[0] = std::min(range[0], length);
+      range[1] = std::max(range[1], length);
+    }
+    return this->GetNumberOfTuples() > 0;
+  }
+};
+
 // The first samples along each axis in a block's bits: those with x = 0, y = 0, z = 0.
 constexpr vtkTypeUInt64 FirstSamples[3] = { 0x1111111111111111, 0x000F000F000F000F,
   0x000000000000FFFF };
@@ -200,7 +244,7 @@ vtkBlockMask vtkBlockMask::Crop(const int first[3], const int count[3], const in
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkTypeUInt64Array> vtkBlockMask::ToArray() const
 {
-  auto array = vtkSmartPointer<vtkTypeUInt64Array>::New();
+  vtkSmartPointer<vtkTypeUInt64Array> array = vtkSmartPointer<RunArray>::New();
   array->SetNumberOfComponents(2);
   array->SetNumberOfTuples(static_cast<vtkIdType>(this->Runs.size()));
   vtkIdType value = 0;
@@ -210,6 +254,15 @@ vtkSmartPointer<vtkTypeUInt64Array> vtkBlockMask::ToArray() const
     array->SetValue(value++, run.Bits);
   }
   return array;
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkTypeUInt64Array> vtkBlockMask::CopyArray(vtkDataArray* array)
+{
+  auto copy = vtkSmartPointer<RunArray>::New();
+  copy->DeepCopy(array);
+  copy->GetInformation()->Clear(); // of what VTK found of the other
+  return copy;
 }
 
 //------------------------------------------------------------------------------

@@ -89,6 +89,12 @@ public:
   std::string FromArray(vtkDataArray* array, vtkTypeInt64 blocks);
   ///@}
 
+  /**
+   * Copies an array of such tuples, which a reader made, to one as ToArray() makes it: VTK's
+   * writers may make files of others that no reader reads without an error.
+   */
+  static vtkSmartPointer<vtkTypeUInt64Array> CopyArray(vtkDataArray* array);
+
   bool operator==(const vtkBlockMask& other) const { return this->Runs == other.Runs; }
 
 private:

@@ -210,8 +210,8 @@ public:
   /**
    * Gives a stream, such as a reader has read, an array on the same memory whose range is known at
    * once. VTK looks at every byte of a usual array, some 20 ns long, if a program asks for its
-   * range, as ParaView does. What this module makes has such an array already. Does nothing to
-   * other objects, which may be null.
+   * range, as ParaView does. What this module makes has such an array already. Masks get arrays,
+   * too, whose ranges VTK's writers can write. Does nothing to other objects, which may be null.
    */
   static void SpeedUpRanges(vtkDataObject* object);
 

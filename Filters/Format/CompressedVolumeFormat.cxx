@@ -673,6 +673,8 @@ void CompressedVolumeFormat::SpeedUpRanges(vtkDataObject* object)
   if (fields)
   {
     StreamArray::Replace(fields, StreamName);
+    ReplaceMask(fields, HiddenSamplesName);
+    ReplaceMask(fields, HiddenCellsName);
     LevelFormat::SpeedUpRanges(fields);
   }
 }

@@ -96,3 +96,13 @@ void FieldArrays::StoreMask(vtkFieldData* fields, const char* name, const vtkBlo
     fields->AddArray(array);
   }
 }
+
+//------------------------------------------------------------------------------
+void FieldArrays::ReplaceMask(vtkFieldData* fields, const char* name)
+{
+  auto* const array = vtkArrayDownCast<vtkDataArray>(fields->GetAbstractArray(name));
+  if (array && array->GetNumberOfComponents() == 2 && array->GetDataTypeSize() == 8)
+  {
+    fields->AddArray(vtkBlockMask::CopyArray(array));
+  }
+}

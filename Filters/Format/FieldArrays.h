@@ -31,6 +31,9 @@ Status GetMask(vtkFieldData* fields, const char* name, vtkTypeInt64 blocks, vtkB
 /// Stores a mask, unless it is empty.
 void StoreMask(vtkFieldData* fields, const char* name, const vtkBlockMask& mask);
 
+/// Makes of a mask's array, if there is one, one that VTK's writers can handle.
+void ReplaceMask(vtkFieldData* fields, const char* name);
+
 template <typename ArrayT, typename T>
 void StoreValues(vtkFieldData* fields, const char* name, const T* values, int count)
 {

@@ -385,5 +385,7 @@ void LevelFormat::SpeedUpRanges(vtkFieldData* fields)
   for (int i = 1; i <= Volume::MaximumLevels; ++i)
   {
     StreamArray::Replace(fields, Names(i)("Stream").c_str());
+    ReplaceMask(fields, Names(i)("HiddenSamples").c_str());
+    ReplaceMask(fields, Names(i)("HiddenCells").c_str());
   }
 }

@@ -22,6 +22,7 @@ from .._typing import Array, Progress
 from .._vtk import observe_progress, vtk_errors
 from ..compression import is_compressed
 from ..geometry import GHOSTS
+from ..vtkProgIsoFilters import vtkCompressedVolume
 from .files import DISK_FULL
 from .footer import add_footer, check_footer
 from .images import ImageSource, checked_image, geometry_of, make_active, place_as
@@ -213,6 +214,11 @@ def write_vti(
     security update of its XML parser (libexpat1 2.5.0-1+deb12u2).
     """
     writer = vtkXMLImageDataWriter()
+    if is_compressed(image):
+        writable = vtkImageData()
+        writable.ShallowCopy(image)
+        image = writable
+        vtkCompressedVolume.SpeedUpRanges(image)
     writer.SetInputData(image)
     if appended:
         writer.SetDataModeToAppended()
