@@ -1,8 +1,8 @@
 """Mirrored data look as Contour's surface does: by a display's scale, and by ParaView's Reflect.
 
 A scale below 0 turns VTK's meshes inside out: they are dark then, so that only their outlines are
-compared. Reflect makes an unstructured grid of an image in ParaView 5.11, for which the
-representation is not offered, and images since 5.13.
+compared. Reflect makes an unstructured grid of an image (ParaView 5.11 and 5.13), for which the
+representation is not offered; where it makes images, they are compared, too.
 """
 
 import session
