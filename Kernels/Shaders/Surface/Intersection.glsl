@@ -91,8 +91,8 @@ vec2 Extrema(vec4 b)
 const float ROOT_RESOLUTION = 1.2e-7; // a float's, just below 1
 
 // Refines the root in [low, high], where the sign changes, by Newton's method, from where the chord
-// of the whole cubic vanishes within it, or else the middle: at an end that is zero itself the signs
-// need not change. Bisects where a step would leave the bracket.
+// of the whole cubic vanishes within it, or else the middle: at an end that is zero the sign need
+// not change. Bisects where a step would leave the bracket.
 float RefineRoot(vec4 b, float low, float high, bool lowInside)
 {
   precise float chord = b.x / (b.x - b.w);
