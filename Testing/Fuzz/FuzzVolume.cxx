@@ -114,7 +114,9 @@ void CheckContour(
     const vtkIdType at = bytes.Take<std::uint16_t>() % samples->GetNumberOfTuples();
     contour->SetValue(values + i, samples->GetComponent(at, 0));
   }
-  if (!Update(contour) || values > 0 ||
+  int own[6];
+  vtkCompressedVolume::GetOwnExtent(image, own); // what other pieces own is not contoured
+  if (!Update(contour) || values > 0 || !std::equal(own, own + 6, image->GetExtent()) ||
     volume->GetAssociation() != vtkCompressedVolume::PointData || !volume->Covers(image) ||
     volume->HidesAny() || volume->HasUnits())
   {
