@@ -20,15 +20,14 @@ public:
   /// Forgets the error.
   void Close();
 
-  /// Is the context older than OpenGL 4.3, but offers what we need as extensions?
+  /// What the sources of its shaders may use.
   const ShaderDialect& GetDialect() const { return this->Dialect; }
   const DeviceLimits& GetLimits() const { return this->Limits; }
   /// Lowers the largest buffer to so many bytes; 0 restores what OpenGL allows.
   void LimitBuffers(std::int64_t bytes);
 
   ///@{ OpenGL tells errors late, and a stage that runs after one could hang the GPU: the first
-  /// error
-  /// is kept until Close(), and stops all later work. Each function returns it.
+  /// error is kept until Close(), and stops all later work. Each function returns it.
   const Status& GetStatus() const { return this->FirstError; }
   const Status& Fail(const Status& error);
   /// Asks whether OpenGL has run out of memory: some drivers make memory only where it is used.
