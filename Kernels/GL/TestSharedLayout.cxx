@@ -6,9 +6,7 @@
 #include "GL/ProgIsoGL.h"
 #include "GL/ProgramCache.h"
 #include "Shaders/Glsl.h"
-
-#include <vtkNew.h>
-#include <vtkRenderWindow.h>
+#include "Shaders/TestWindow.h"
 
 #include <gtest/gtest.h>
 
@@ -212,14 +210,12 @@ SceneNeeds EverythingNeeded(bool cached)
   return needs;
 }
 
-class SharedLayout : public testing::Test
+class SharedLayout : public TestWithWindow
 {
 protected:
   void SetUp() override
   {
-    this->Window->SetOffScreenRendering(1);
-    this->Window->SetSize(16, 16);
-    this->Window->Render();
+    TestWithWindow::SetUp();
     ASSERT_TRUE(this->Gl.Open()) << this->Gl.GetStatus().GetMessage();
     this->Programs = std::make_unique<ProgramCache>(this->Gl.GetDialect(), false);
   }
@@ -264,7 +260,6 @@ protected:
     return static_cast<GLuint>(count);
   }
 
-  vtkNew<vtkRenderWindow> Window;
   Context Gl;
   std::unique_ptr<ProgramCache> Programs;
 };

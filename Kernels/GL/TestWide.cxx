@@ -7,9 +7,7 @@
 #include "GL/ProgIsoGL.h"
 #include "GL/ProgramCache.h"
 #include "Shaders/ShaderAssembler.h"
-
-#include <vtkNew.h>
-#include <vtkRenderWindow.h>
+#include "Shaders/TestWindow.h"
 
 #include <gtest/gtest.h>
 
@@ -111,14 +109,12 @@ std::vector<Arguments> RandomArguments(int bits, bool negative)
   return given;
 }
 
-class WideNumbers : public testing::Test
+class WideNumbers : public TestWithWindow
 {
 protected:
   void SetUp() override
   {
-    this->Window->SetOffScreenRendering(1);
-    this->Window->SetSize(16, 16);
-    this->Window->Render();
+    TestWithWindow::SetUp();
     ASSERT_TRUE(this->Gl.Open()) << this->Gl.GetStatus().GetMessage();
   }
 
@@ -183,7 +179,6 @@ protected:
     }
   }
 
-  vtkNew<vtkRenderWindow> Window;
   Context Gl;
 };
 

@@ -4,6 +4,7 @@
 // it has the volume decoded or in a cache.
 #include "Pipeline/ProgressivePipeline.h"
 #include "Pipeline/TestViews.h"
+#include "Shaders/TestWindow.h"
 #include "Store/StoredRanges.h"
 
 #include "vtkBlockRanges.h"
@@ -12,7 +13,6 @@
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
-#include "vtkRenderWindow.h"
 #include "vtkUnsignedCharArray.h"
 
 #include "Scene/CompressedInput.h"
@@ -72,14 +72,12 @@ void Compress(const Sampled& field, vtkCompressedVolume* volume)
   ASSERT_TRUE(volume->HasRanges());
 }
 
-class StoredRanges : public testing::Test
+class StoredRanges : public TestWithWindow
 {
 protected:
   void SetUp() override
   {
-    this->Window->SetOffScreenRendering(1);
-    this->Window->SetSize(16, 16);
-    this->Window->Render();
+    TestWithWindow::SetUp();
     ASSERT_TRUE(this->Pipeline.Initialize(1)) << this->Pipeline.GetStatus().GetMessage();
   }
   void TearDown() override { this->Pipeline.Release(); }
@@ -112,7 +110,6 @@ protected:
     return words;
   }
 
-  vtkNew<vtkRenderWindow> Window;
   ProgressivePipeline Pipeline;
 };
 

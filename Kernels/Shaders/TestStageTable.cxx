@@ -4,9 +4,7 @@
 // grant, and not with less.
 #include "GL/ProgIsoGL.h"
 #include "Shaders/ShaderAssembler.h"
-
-#include <vtkNew.h>
-#include <vtkRenderWindow.h>
+#include "Shaders/TestWindow.h"
 
 #include <gtest/gtest.h>
 
@@ -147,15 +145,8 @@ bool CompilesAlone(const StageInfo& stage, const std::string& file)
     });
 }
 
-class Shaders : public testing::Test
+class Shaders : public TestWithWindow
 {
-protected:
-  void SetUp() override
-  {
-    this->Window->SetOffScreenRendering(1);
-    this->Window->Render();
-  }
-  vtkNew<vtkRenderWindow> Window;
 };
 }
 

@@ -5,7 +5,6 @@ import zlib
 import numpy as np
 import pytest
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOLegacy import vtkDataSetReader, vtkDataSetWriter
 from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLImageDataWriter
 
@@ -14,7 +13,9 @@ from helpers.holes import nan_samples
 from helpers.images import (
     PREFIX,
     blobs,
+    copy_of,
     make_image,
+    message_of,
     metadata,
     noise,
     same_bits,
@@ -31,18 +32,6 @@ PAGE = vtkCompressedVolume.PageBytes
 def volume():
     """Return a volume whose stream has 3 pages, the last a part of one."""
     return progiso.compress(make_image(noise((40, 44, 48))), rate=15)
-
-
-def copy_of(volume):
-    copy = vtkImageData()
-    copy.DeepCopy(volume)
-    return copy
-
-
-def message_of(volume):
-    reader = vtkCompressedVolume()
-    reader.Read(volume)
-    return reader.GetErrorMessage()
 
 
 def test_a_page_has_zlibs_checksum(volume):

@@ -3,11 +3,19 @@
 import numpy as np
 import pytest
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkImagingCore import vtkImageShiftScale
 
 import progiso
-from helpers.images import PREFIX, blobs, make_image, noise, samples_of, without_checksums
+from helpers.images import (
+    PREFIX,
+    blobs,
+    copy_of,
+    make_image,
+    message_of,
+    noise,
+    samples_of,
+    without_checksums,
+)
 from progiso import vtkCompressedVolume, vtkImageZFPDecompress
 from progiso.bench.levels import CHOSEN, coarsened, interpolated
 
@@ -25,18 +33,6 @@ def arrays_of(volume):
 
 def numbers_of(volume, name):
     return vtk_to_numpy(volume.GetFieldData().GetAbstractArray(name))
-
-
-def copy_of(volume):
-    copy = vtkImageData()
-    copy.DeepCopy(volume)
-    return copy
-
-
-def message_of(volume):
-    reader = vtkCompressedVolume()
-    reader.Read(volume)
-    return reader.GetErrorMessage()
 
 
 @pytest.fixture(scope="module")

@@ -18,6 +18,7 @@ from helpers.holes import nan_samples
 from helpers.images import (
     PREFIX,
     blobs,
+    copy_of,
     make_image,
     metadata,
     noise,
@@ -28,12 +29,6 @@ from progiso import vtkCompressedVolume
 from progiso.cli import main
 
 NAMES = ("Ranges", "RangesDirectory", "RangesOf")
-
-
-def copy_of(volume):
-    copy = vtkImageData()
-    copy.DeepCopy(volume)
-    return copy
 
 
 def read(image):

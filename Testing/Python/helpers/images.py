@@ -3,6 +3,7 @@
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkIntArray
+from vtkmodules.vtkCommonDataModel import vtkImageData
 
 import progiso
 from progiso.geometry import samples_of
@@ -24,6 +25,20 @@ METADATA = ("Version", "BlockBits", "Dimensions", "Range", "ScalarType", "Compon
 def metadata(compressed, name):
     """Return one of a compressed volume's metadata arrays as numbers."""
     return vtk_to_numpy(compressed.GetFieldData().GetAbstractArray(PREFIX + name))
+
+
+def copy_of(image):
+    """Return a copy of an image that shares nothing with it."""
+    copy = vtkImageData()
+    copy.DeepCopy(image)
+    return copy
+
+
+def message_of(image):
+    """Return what is wrong with an image as a compressed volume; nothing if it is one."""
+    reader = vtkCompressedVolume()
+    reader.Read(image)
+    return reader.GetErrorMessage()
 
 
 def without_checksums(compressed):

@@ -4,11 +4,11 @@ import json
 
 import numpy as np
 import pytest
-from vtkmodules.vtkCommonDataModel import vtkImageData
 
 import progiso
 from helpers.images import (
     blobs,
+    copy_of,
     make_image,
     metadata,
     same_bits,
@@ -31,9 +31,7 @@ def plain():
 
 
 def old_version():
-    copy = vtkImageData()
-    copy.DeepCopy(volume())
-    return without_checksums(copy)
+    return without_checksums(copy_of(volume()))
 
 
 KINDS = {"compressed": volume, "plain": plain, "old version": old_version}

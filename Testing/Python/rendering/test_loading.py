@@ -5,12 +5,18 @@ import ctypes
 
 import numpy as np
 import pytest
-from vtkmodules.vtkCommonDataModel import vtkImageData
 
 import progiso
 from helpers.gl_hooks import gl, intercepted, program_label
 from helpers.holes import KINDS
-from helpers.images import blobs, make_image, noise, reference_volume, without_ranges
+from helpers.images import (
+    blobs,
+    copy_of,
+    make_image,
+    noise,
+    reference_volume,
+    without_ranges,
+)
 from helpers.messages import vtk_messages
 from helpers.scenes import CACHED, Scene, least_budget, orbit
 from progiso.geometry import hide_points
@@ -70,12 +76,6 @@ def test_slices_of_a_stream_in_several_buffers(volume):
         scene = Scene(image, 0.5, camera, SIZE, LargestBuffer=10_500_000 if whole else 600_000)
         scene.mapper.SetDecodeWholeVolume(whole)
         assert scene.depth().tobytes() == expected.tobytes()
-
-
-def copy_of(image):
-    copy = vtkImageData()
-    copy.DeepCopy(image)
-    return copy
 
 
 def pictures_of(image, isovalue, camera, **settings):

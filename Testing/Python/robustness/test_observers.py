@@ -107,6 +107,26 @@ DEEDS = {
 }
 
 
+def undo(scene, image, mapper, volume, size):
+    """Give a scene back all that a deed may have changed, and render it."""
+    volume.SetMapper(mapper)
+    mapper.SetInputData(image)
+    mapper.SetMemoryBudget(0)
+    paint(volume, OPAQUE)
+    scene.window.SetSize(*size)
+    scene.render()
+
+
+def check_picture(scene, expected, deed):
+    """Compare the picture after a deed that is undone.
+
+    VTK's meshes crash where they move to another window while they are rendered; OSMesa's windows
+    are not drawn to after that.
+    """
+    if "OS" not in scene.window.GetClassName() or "mapper in another" not in deed:
+        assert np.array_equal(scene.picture(), expected)
+
+
 @pytest.mark.parametrize("deed", DEEDS)
 def test_an_observer_does_anything_while_a_volume_loads(drawn, image, deed):
     """Before the upload, the preparation, and the passes, and in between: as above."""
@@ -126,14 +146,8 @@ def test_an_observer_does_anything_while_a_volume_loads(drawn, image, deed):
             scene.window.Render()
         assert len(told) > part
         mapper.RemoveObserver(observer)
-        volume.SetMapper(mapper)
-        mapper.SetInputData(image)
-        mapper.SetMemoryBudget(0)
-        paint(volume, OPAQUE)
-        scene.window.SetSize(*size)
-        scene.render()
-        if "OS" not in scene.window.GetClassName() or "mapper in another" not in deed:
-            assert np.array_equal(scene.picture(), expected)
+        undo(scene, image, mapper, volume, size)
+        check_picture(scene, expected, deed)
 
 
 def test_loading_is_told(image):
@@ -178,16 +192,8 @@ def test_an_observer_does_anything(drawn, image, event, deed):
     with vtk_messages():
         scene.window.Render()
     assert done
-    volume.SetMapper(mapper)
-    mapper.SetInputData(image)
-    mapper.SetMemoryBudget(0)
-    paint(volume, OPAQUE)
-    scene.window.SetSize(*size)
-    scene.render()
-    # VTK's meshes crash where they move to another window while they are rendered; OSMesa's windows
-    # are not drawn to after that
-    if "OS" not in scene.window.GetClassName() or "mapper in another" not in deed:
-        assert np.array_equal(scene.picture(), expected)
+    undo(scene, image, mapper, volume, size)
+    check_picture(scene, expected, deed)
 
 
 def test_an_observer_drops_the_last_reference(drawn):
