@@ -40,13 +40,12 @@ ivec4 KeysOf(ivec4 bits)
 
 int KeyOf(float value)
 {
-  int bits = floatBitsToInt(value);
-  return bits ^ (bits >> 31 & 0x7FFFFFFF);
+  return KeysOf(ivec4(floatBitsToInt(value))).x;
 }
 
 float ValueOf(int key)
 {
-  return intBitsToFloat(key ^ (key >> 31 & 0x7FFFFFFF));
+  return intBitsToFloat(KeysOf(ivec4(key)).x);
 }
 
 // Stores those samples of a block's row y + 4 z that the macrocell's cells need.
