@@ -18,7 +18,8 @@ namespace
 {
 using namespace test;
 
-const char* const FileName = "TestZFPReader.zfp";
+const std::string Path = testing::TempDir() + "TestZFPReader.zfp";
+const char* const FileName = Path.c_str();
 const Dims Size = { 33, 9, 6 };
 
 void WriteFile(const std::string& bytes)

@@ -41,9 +41,15 @@ std::string Expected(const Dims& dims, std::vector<float> values, double rate, b
 }
 
 //------------------------------------------------------------------------------
+std::string InTemporaryFolder(const char* name)
+{
+  return testing::TempDir() + name;
+}
+
 TEST(ZFPWriter, Files)
 {
-  const char* const fileName = "TestZFPWriter.zfp";
+  const std::string path = InTemporaryFolder("TestZFPWriter.zfp");
+  const char* const fileName = path.c_str();
   const Dims shapes[] = { { 2, 2, 2 }, { 9, 4, 6 }, { 33, 65, 31 } };
   for (const Dims& dims : shapes)
   {
@@ -77,11 +83,13 @@ void ExpectError(vtkImageData* image, const char* fileName, const std::string& w
 TEST(ZFPWriter, Errors)
 {
   const auto plain = FloatImage({ 4, 4, 4 });
-  ExpectError(plain, "TestZFPWriterPlain.zfp", "not a valid compressed volume");
-  EXPECT_FALSE(std::ifstream("TestZFPWriterPlain.zfp")) << "no file is made";
+  const std::string none = InTemporaryFolder("TestZFPWriterPlain.zfp");
+  ExpectError(plain, none.c_str(), "not a valid compressed volume");
+  EXPECT_FALSE(std::ifstream(none)) << "no file is made";
   const auto compressed = Compress(plain);
   ExpectError(compressed, nullptr, "FileName");
   ExpectError(compressed, "no such folder/a.zfp", "Cannot open");
-  ExpectError(Compress(FloatImage({ 2, 65537, 2 })), "TestZFPWriterLong.zfp", "65536");
+  const std::string tooLong = InTemporaryFolder("TestZFPWriterLong.zfp");
+  ExpectError(Compress(FloatImage({ 2, 65537, 2 })), tooLong.c_str(), "65536");
 }
 }

@@ -45,6 +45,20 @@ Native code for unnamed fragment shader GL3 (sha1 abc3)
 SIMD8 shader: 7 instructions. 0 loops. 9 cycles. 0:0 spills:fills, 3 sends, scheduled with mode
 """
 
+AMD = """label: CastRays
+...
+After RA:
+BB0
+/* logical preds: / linear preds: / kind: top-level, */
+\ts1: %3:s[0],  s1: %4:s[1] = p_startpgm
+\ts2: %8:s[2-3] = s_load_dwordx2 %2:s[0-1], 0
+\tv1: %9:v[1] = v_add_u32 %5:v[0], %6:v[2]
+\tds_write_b32 %9:v[1], %3:v[3]
+\ts_endpgm
+Shader Stats: SGPRS: 32 VGPRS: 40 Code Size: 64 LDS: 0 Scratch: 0 Max Waves: 12 \
+Spilled SGPRs: 1 Spilled VGPRs: 2 PrivMem VGPRs: 0 DivergentLoop: 0 (CS, W64)
+"""
+
 
 @pytest.fixture(scope="module")
 def tool():
@@ -72,10 +86,23 @@ def test_assembly_is_found_in_a_binary(tool):
     assert [text.decode() + "\n" for text in tool.ASSEMBLY.findall(binary)] == [NVIDIA, NVIDIA]
 
 
-def test_mesas_log_names_the_stages(tool):
-    named = [(m["stage"], m["simd"], m["instructions"]) for m in tool.INTEL.finditer(INTEL)]
-    assert named[:2] == [("CastRays", "8", "10"), ("CastRays", "16", "1842")]
-    assert [m["spills"] for m in tool.INTEL.finditer(INTEL)][1] == "14"
+def test_log_of_intels_compiler_names_the_stages(tool):
+    rows = tool.MAKERS["intel"].rows(INTEL)
+    assert [(row["stage"], row["SIMD"], row["instructions"]) for row in rows] == [
+        ("CastRays", 8, 10),
+        ("CastRays", 16, 1842),
+        ("unnamed", 8, 7),
+    ]
+    assert rows[1]["spills:fills"] == "14:33"
+
+
+def test_log_of_amds_compiler_names_the_stages(tool):
+    assert tool.MAKERS["amd"].rows(AMD) == [
+        {
+            **{"stage": "CastRays", "wave": 64, "instructions": 4, "vector registers": 40},
+            **{"spilled": "2, 1 scalar", "waves": 12},
+        }
+    ]
 
 
 @pytest.mark.parametrize("variant", ["whole", "cached"])
