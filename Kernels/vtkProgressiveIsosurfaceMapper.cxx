@@ -13,6 +13,7 @@
 #include "Scene/HitGeometry.h"
 #include "Scene/ImageStatistics.h"
 #include "Scene/InputArrays.h"
+#include "Scene/LevelTranslation.h"
 #include "Scene/Palette.h"
 #include "Scene/RefinementTimer.h"
 #include "Scene/SceneLimits.h"
@@ -46,6 +47,7 @@
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -58,6 +60,19 @@ static_assert(glsl::MAX_SPECULATION == 64, "SpeculationLimit follows the shaders
 namespace
 {
 constexpr double Unlimited = std::numeric_limits<double>::infinity(); // milliseconds
+
+constexpr double LeastRateOfMovement = 1.0; // frames a second that a window asks for
+
+std::vector<LevelSteps> StepsOfLevels(vtkCompressedVolume* volume, int coarser)
+{
+  std::vector<LevelSteps> levels = { { 1, 1, 1 } };
+  for (int level = 1; level <= coarser; ++level)
+  {
+    const int* steps = volume->GetLevel(level)->GetSteps();
+    levels.push_back({ steps[0], steps[1], steps[2] });
+  }
+  return levels;
+}
 
 // How much of what a first image takes is done before each part of it, as LoadingEvent tells.
 namespace LoadedBefore
@@ -81,6 +96,8 @@ struct vtkProgressiveIsosurfaceMapper::Internals
   BoundWindow Window; ///< the pipeline's
   ProgressivePipeline Pipeline;
   vtkTimeStamp HandOverTime; ///< of the inputs to the pipeline
+  int HandedLevels = 0;      ///< of detail, beside the volume itself
+  vtkMTimeType LevelsTime = 0; ///< the inputs' whose lack of levels has been told
   PaletteCache Palettes;
   ViewState View;
   vtkRenderer* Renderer = nullptr; ///< of the present render
@@ -168,6 +185,8 @@ void vtkProgressiveIsosurfaceMapper::CopySettings(vtkProgressiveIsosurfaceMapper
   this->SetColorLookupTable(other->ColorLookupTable);
   this->SetLitLikeMeshes(other->LitLikeMeshes);
   this->SetSelectionExtent(other->SelectionExtent);
+  this->SetLevelOfDetail(other->LevelOfDetail);
+  this->SetPixelTolerance(other->PixelTolerance);
   this->SetSpeculationLimit(other->SpeculationLimit);
   this->SetMemoryBudget(other->MemoryBudget);
   this->SetDecodeWholeVolume(other->DecodeWholeVolume);
@@ -200,6 +219,9 @@ void vtkProgressiveIsosurfaceMapper::PrintSelf(ostream& os, vtkIndent indent)
     os << " " << bound;
   }
   os << "\n" << indent << "CompositeIndex: " << this->CompositeIndex << "\n";
+  const char* const levels[] = { "off\n", "on\n", "interactive\n" };
+  os << indent << "LevelOfDetail: " << levels[this->LevelOfDetail];
+  os << indent << "PixelTolerance: " << this->PixelTolerance << "\n";
   os << indent << "SpeculationLimit: " << this->SpeculationLimit << "\n";
   os << indent << "MemoryBudget: " << this->MemoryBudget << "\n";
   os << indent << "MemoryShare: " << this->MemoryShare << "\n";
@@ -388,6 +410,8 @@ ArrayChoice vtkProgressiveIsosurfaceMapper::MakeArrayChoice()
   choice.Rate = this->Rate;
   choice.MaskNonFinite = this->MaskNonFinite;
   choice.KeepLabels = this->KeepLabels;
+  choice.Levels =
+    this->LevelOfDetail == LevelOfDetailOff ? 0 : +vtkCompressedVolume::MaximumLevels;
   return choice;
 }
 
@@ -424,14 +448,41 @@ bool vtkProgressiveIsosurfaceMapper::BindWindow(vtkOpenGLRenderWindow* window)
   {
     return false;
   }
-  if (impl.HandOverTime < impl.Inputs.GetTime())
+  const int levels = this->CountLevels();
+  if (impl.HandOverTime < impl.Inputs.GetTime() || impl.HandedLevels != levels)
   {
     this->Statistics->SetSource(nullptr); // the last image's figures go
     impl.View.Forget();
-    impl.Pipeline.SetVolume(impl.Inputs.Describe());
+    impl.Pipeline.SetVolume(impl.Inputs.Describe(levels));
+    impl.HandedLevels = levels;
     impl.HandOverTime.Modified();
   }
   return true;
+}
+
+// The coarser levels of detail that are drawn, now or while the camera moves.
+int vtkProgressiveIsosurfaceMapper::CountLevels()
+{
+  const InputArrays& inputs = this->Impl->Inputs;
+  const bool categories = inputs.GetColors().GetImage() && this->ColorLookupTable &&
+    this->ColorLookupTable->GetIndexedLookup();
+  return this->LevelOfDetail == LevelOfDetailOff || categories ? 0 : inputs.CountLevels();
+}
+
+// Says that there are no levels of detail to draw, once for an input.
+void vtkProgressiveIsosurfaceMapper::WarnOfLackOfLevels()
+{
+  Internals& impl = *this->Impl;
+  const vtkMTimeType time = impl.Inputs.GetTime();
+  if (this->LevelOfDetail != LevelOfDetailOff && impl.LevelsTime != time)
+  {
+    impl.LevelsTime = time;
+    const std::string lack = impl.Inputs.DescribeLackOfLevels();
+    if (!lack.empty())
+    {
+      vtkWarningMacro("draws exactly: " << lack);
+    }
+  }
 }
 
 // Says where compression may have changed the surfaces, once for an input and its isovalues.
@@ -473,21 +524,34 @@ void vtkProgressiveIsosurfaceMapper::WarnOfTightBudget()
   }
 }
 
+// Interactive: a still picture is exact.
+bool vtkProgressiveIsosurfaceMapper::DrawsLevels(vtkRenderWindow* window) const
+{
+  const bool moves = window->GetDesiredUpdateRate() >= LeastRateOfMovement;
+  return this->Impl->HandedLevels > 0 && (this->LevelOfDetail == LevelOfDetailOn || moves);
+}
+
 bool vtkProgressiveIsosurfaceMapper::UpdateScene(vtkRenderer* renderer, vtkVolume* volume)
 {
   Internals& impl = *this->Impl;
   this->WarnOfDoubts(volume->GetProperty());
+  this->WarnOfLackOfLevels();
   // not the renderer's size: a pass may draw into a framebuffer of its own, larger than the window
   int place[4];
   impl.Window.Get()->GetState()->vtkglGetIntegerv(GL_VIEWPORT, place);
-  const int viewport[4] = { place[2], place[3], place[0], place[1] };
+  SceneChoice choice = { { place[2], place[3], place[0], place[1] } };
   const CompressedInput& values = impl.Inputs.GetValues();
-  const int reduction = renderer->GetSelector() ? 1 : this->ImageReductionFactor;
-  const int litSides = !renderer->GetTwoSidedLighting() ? glsl::ONE_SIDED
-    : this->LitLikeMeshes                               ? glsl::LIT_LIKE_MESHES
-                                                        : glsl::TWO_SIDED;
-  PipelineScene scene = TranslateScene(
-    renderer, volume, this, values.GetImage(), values.GetVolume(), viewport, reduction, litSides);
+  choice.ImageReduction = renderer->GetSelector() ? 1 : this->ImageReductionFactor;
+  choice.LitSides = !renderer->GetTwoSidedLighting() ? glsl::ONE_SIDED
+    : this->LitLikeMeshes                            ? glsl::LIT_LIKE_MESHES
+                                                     : glsl::TWO_SIDED;
+  if (this->DrawsLevels(renderer->GetRenderWindow()))
+  {
+    choice.Levels = StepsOfLevels(values.GetVolume(), impl.HandedLevels);
+    choice.PixelTolerance = this->PixelTolerance;
+  }
+  PipelineScene scene =
+    TranslateScene(renderer, volume, this, values.GetImage(), values.GetVolume(), choice);
   if (!HasRays(scene.View))
   {
     return this->Fails("cannot show its input: the image's spacing, origin and directions, the "
@@ -690,7 +754,29 @@ ImageStatistics vtkProgressiveIsosurfaceMapper::CollectFigures(bool detailed)
   image.TotalMilliseconds = std::max(impl.TotalMilliseconds, passes);
   image.InputMilliseconds = impl.InputMilliseconds;
   image.HostBytes = impl.Inputs.GetHostBytes();
+  image.LevelPixels = this->CountPixelsOfLevels();
   return image;
+}
+
+std::vector<vtkTypeInt64> vtkProgressiveIsosurfaceMapper::CountPixelsOfLevels()
+{
+  Internals& impl = *this->Impl;
+  const PipelineScene& scene = impl.View.GetScene();
+  std::vector<vtkTypeInt64> pixels(std::max(scene.View.NumberOfLevels, 1), 0);
+  if (!IsEmpty(scene.View) && impl.Pipeline.GetStatus() && impl.Pipeline.IsStarted())
+  {
+    const std::vector<std::uint32_t> keys = impl.Pipeline.GetHits().ReadKeys();
+    const std::vector<float> first =
+      scene.Translucent ? impl.Pipeline.GetHits().ReadDepths() : std::vector<float>();
+    for (const double depth : HitDepths(scene.View, keys, first))
+    {
+      if (std::isfinite(depth))
+      {
+        ++pixels[LevelAtDepth(scene.View, depth)];
+      }
+    }
+  }
+  return pixels;
 }
 
 //------------------------------------------------------------------------------

@@ -57,6 +57,7 @@
 
 #include <memory> // for the implementation
 #include <string> // for messages
+#include <vector> // for figures
 
 class Status;
 class vtkAlgorithmOutput;
@@ -195,6 +196,44 @@ public:
    */
   vtkSetMacro(CompositeIndex, unsigned int);
   vtkGetMacro(CompositeIndex, unsigned int);
+  ///@}
+
+  ///@{
+  /**
+   * Whether far parts of the surface are drawn from coarser copies of the volume, its levels of
+   * detail (vtkImageZFPCompress::SetLevels(); plain input gets them when it is compressed):
+   *
+   * - LevelOfDetailOff (default): the image is exact.
+   * - LevelOfDetailOn: each part is drawn from the coarsest level whose samples are, as the camera
+   *   sees them, no more than PixelTolerance pixels apart along any axis. A level goes over to the
+   *   next in the last sixth of its depths, where their values are blended, so that nothing jumps
+   *   when the camera moves. Memory and time follow the pixels, not the samples of the volume.
+   * - LevelOfDetailInteractive: on while the window asks for a frame rate of 1 per second or more
+   *   (vtkRenderWindow::SetDesiredUpdateRate(), which interactor styles set while the camera
+   *   moves), exact when it is still.
+   *
+   * A volume without levels is drawn exactly, with a warning; also, without one, where the colours
+   * are categories, of which a coarser level has none.
+   */
+  enum LevelsOfDetail
+  {
+    LevelOfDetailOff,
+    LevelOfDetailOn,
+    LevelOfDetailInteractive
+  };
+  vtkSetClampMacro(LevelOfDetail, int, LevelOfDetailOff, LevelOfDetailInteractive);
+  vtkGetMacro(LevelOfDetail, int);
+  void SetLevelOfDetailToOff() { this->SetLevelOfDetail(LevelOfDetailOff); }
+  void SetLevelOfDetailToOn() { this->SetLevelOfDetail(LevelOfDetailOn); }
+  void SetLevelOfDetailToInteractive() { this->SetLevelOfDetail(LevelOfDetailInteractive); }
+  ///@}
+
+  ///@{
+  /**
+   * How many pixels the samples of a level of detail may be apart, 1/16 … 64. Default 1.
+   */
+  vtkSetClampMacro(PixelTolerance, double, 0.0625, 64.0);
+  vtkGetMacro(PixelTolerance, double);
   ///@}
 
   ///@{
@@ -405,6 +444,8 @@ protected:
   bool LitLikeMeshes = false;
   int SelectionExtent[6] = { 0, -1, 0, -1, 0, -1 };
   unsigned int CompositeIndex = 0;
+  int LevelOfDetail = LevelOfDetailOff;
+  double PixelTolerance = 1.0;
   int SpeculationLimit = 64;
   vtkTypeInt64 MemoryBudget = 0;
   double MemoryShare = 1.0;
@@ -424,6 +465,9 @@ private:
   ArrayChoice MakeArrayChoice();
   void WarnOfDoubts(vtkVolumeProperty* property);
   void WarnOfTightBudget();
+  int CountLevels();
+  void WarnOfLackOfLevels();
+  bool DrawsLevels(vtkRenderWindow* window) const;
   bool UpdateColors(vtkImageData* image);
   bool BindWindow(vtkOpenGLRenderWindow* window);
   bool UpdateScene(vtkRenderer* renderer, vtkVolume* volume);
@@ -439,6 +483,7 @@ private:
   bool Continues(const Status& pipelineStatus);
   void ReleaseGraphics(vtkWindow* window);
   ImageStatistics CollectFigures(bool detailed);
+  std::vector<vtkTypeInt64> CountPixelsOfLevels();
   bool HasImage();
 
   struct Internals;

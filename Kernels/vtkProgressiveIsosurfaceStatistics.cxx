@@ -227,6 +227,17 @@ const char* vtkProgressiveIsosurfaceStatistics::GetStageLeftOut(int i)
   return HasIndex(stages, i) ? stages[i].c_str() : nullptr;
 }
 
+int vtkProgressiveIsosurfaceStatistics::GetNumberOfLevels()
+{
+  return static_cast<int>(this->GetImage().LevelPixels.size());
+}
+
+vtkTypeInt64 vtkProgressiveIsosurfaceStatistics::GetLevelPixels(int level)
+{
+  const std::vector<std::int64_t>& pixels = this->GetImage().LevelPixels;
+  return HasIndex(pixels, level) ? pixels[level] : 0;
+}
+
 bool vtkProgressiveIsosurfaceStatistics::GetConverged()
 {
   return this->GetImage().Converged;

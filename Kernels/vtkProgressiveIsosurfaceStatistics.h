@@ -134,6 +134,15 @@ public:
   const char* GetStageLeftOut(int i);
   ///@}
 
+  ///@{
+  /**
+   * The levels of detail of the view, of which level 0 is the volume itself, and for how many
+   * pixels the (nearest) surface that they show lies in each; where two levels blend, in the finer.
+   */
+  int GetNumberOfLevels();
+  vtkTypeInt64 GetLevelPixels(int level);
+  ///@}
+
   /**
    * Whether the image is complete.
    */

@@ -14,7 +14,7 @@ void SetSegment(GLuint program, const glsl::Segment& segment)
 {
   const std::pair<const char*, GLuint> members[] = { { "segment.FirstBlock", segment.FirstBlock },
     { "segment.Blocks", segment.Blocks }, { "segment.FirstBit", segment.FirstBit },
-    { "segment.Words", segment.Words } };
+    { "segment.Words", segment.Words }, { "segment.BlockBits", segment.BlockBits } };
   for (const auto& member : members)
   {
     glUniform1ui(glGetUniformLocation(program, member.first), member.second);

@@ -150,6 +150,45 @@ void FixRays(const ViewGeometry& view, const DrawnDepths& depths, glsl::View& bl
   }
 }
 
+// A parameter within a ray's way, or just behind its end.
+Exact ParameterOf(double depth, const DrawnDepths& depths)
+{
+  const Exact way = (Exact(depth) - depths.First) / (Exact(depths.Last) - depths.First);
+  const Exact end = std::ldexp(Exact(1), glsl::WAY_BITS);
+  return std::max(Exact(0), std::min(std::ceil(end * way), end + 1));
+}
+
+// The weight that two depths and their weights give at a parameter between or beyond them.
+float WeightAt(Exact parameter, const LevelSpan& span, const DrawnDepths& depths)
+{
+  if (span.FirstWeight == span.LastWeight || span.BlendFrom >= span.Until)
+  {
+    return static_cast<float>(span.LastWeight);
+  }
+  const Exact way = std::ldexp(parameter, -glsl::WAY_BITS);
+  const Exact depth = depths.First + way * (Exact(depths.Last) - depths.First);
+  const Exact share = (depth - span.BlendFrom) / (Exact(span.Until) - span.BlendFrom);
+  const Exact weight = span.FirstWeight + share * (span.LastWeight - span.FirstWeight);
+  return static_cast<float>(std::max(Exact(0), std::min(weight, Exact(1))));
+}
+
+// A parameter that a depth has exactly keeps its weight: levels meet there without a step.
+void FixSpan(const LevelSpan& span, const DrawnDepths& depths, glsl::LevelSpan& block)
+{
+  const Exact first = ParameterOf(span.BlendFrom, depths);
+  const Exact last = ParameterOf(span.Until, depths);
+  const Exact end = std::ldexp(Exact(1), glsl::WAY_BITS);
+  const auto firstBits = static_cast<std::int64_t>(first), lastBits = static_cast<std::int64_t>(last);
+  block.BlendHigh = static_cast<std::int32_t>(firstBits >> 32);
+  block.BlendLow = static_cast<std::uint32_t>(firstBits);
+  block.UntilHigh = static_cast<std::int32_t>(lastBits >> 32);
+  block.UntilLow = static_cast<std::uint32_t>(lastBits);
+  const bool begins = first > 0 && first <= end, ends = last > 0 && last <= end;
+  block.FirstWeight =
+    begins ? static_cast<float>(span.FirstWeight) : WeightAt(first, span, depths);
+  block.LastWeight = ends ? static_cast<float>(span.LastWeight) : WeightAt(last, span, depths);
+}
+
 void ToFloat(const PixelVector& vector, glsl::PixelVector& rounded)
 {
   std::copy(vector.Base, vector.Base + 3, rounded.Base);
@@ -210,7 +249,13 @@ bool HasTooLongWays(const ViewGeometry& view)
 glsl::View FixView(const ViewGeometry& view)
 {
   glsl::View block = {};
-  FixRays(view, FindDrawnDepths(view), block);
+  const DrawnDepths depths = FindDrawnDepths(view);
+  FixRays(view, depths, block);
+  block.NumberOfLevels = view.NumberOfLevels;
+  for (int level = 0; level < view.NumberOfLevels && depths.First < depths.Last; ++level)
+  {
+    FixSpan(view.Levels[level], depths, block.Levels[level]);
+  }
   ToFloat(view.EyeOrigin, block.EyeOrigin);
   ToFloat(view.EyeDirection, block.EyeDirection);
   FixPlanes(view.CroppingLow, block.CroppingLow);

@@ -34,9 +34,15 @@ std::string Mebibytes(std::int64_t bytes, int digits)
   return words.str();
 }
 
+// Where a level of detail goes over to the next, a ray needs blocks of both.
+std::int64_t LevelsAtOnce(const SceneNeeds& scene)
+{
+  return scene.Levels ? 2 : 1;
+}
+
 std::int64_t LeastSlots(const SceneNeeds& scene)
 {
-  return std::min(MinimumSlots, scene.Blocks);
+  return std::min(LevelsAtOnce(scene) * MinimumSlots, scene.Blocks);
 }
 
 std::int64_t ChooseBudget(
@@ -115,7 +121,7 @@ MemoryPlan PlanMemory(
   const std::int64_t wholeBytes = BytesBesideStream(whole);
   const std::int64_t leastCached = BytesBesideStream(WithCache(scene, LeastSlots(scene)));
   const bool mayBeWhole =
-    settings.DecodeWholeVolume && BytesPerSlot(whole) * whole.Slots <= limits.LargestBuffer;
+    settings.DecodeWholeVolume && !scene.Levels && BytesPerSlot(whole) * whole.Slots <= limits.LargestBuffer;
   plan.LeastBudget = mayBeWhole ? std::min(leastCached, wholeBytes) : leastCached;
   plan.Wanted = TakeShare(ChooseBudget(limits, settings, scene), settings, plan.LeastBudget);
   plan.Budget = std::max(plan.Wanted, plan.LeastBudget);
@@ -173,7 +179,8 @@ SceneNeeds WithCache(const SceneNeeds& scene, std::int64_t slots)
   SceneNeeds needs = scene;
   needs.Cached = true;
   needs.Slots = slots;
-  needs.MapPages = std::min(scene.Macrocells, std::max(MinimumMapPages, slots / SlotsPerMapPage));
+  needs.MapPages = std::min(scene.Macrocells,
+    std::max(LevelsAtOnce(scene) * MinimumMapPages, slots / SlotsPerMapPage));
   return needs;
 }
 

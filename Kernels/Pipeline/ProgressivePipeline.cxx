@@ -6,6 +6,7 @@
 #include "Pipeline/MacrocellBox.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <limits>
@@ -20,16 +21,52 @@ constexpr std::int64_t MaximumResetGroups = 4096; // each resets many slots wher
 constexpr std::uint32_t PixelsPerStraggler = 32;
 constexpr std::chrono::milliseconds PollingInterval(1); // of programs that are being compiled
 
-glsl::Volume DescribeVolume(const VolumeSize& size, const PipelineVolume& volume)
+// The levels' streams and shapes, the volume itself first.
+std::vector<const PipelineLevel*> LevelsOf(const PipelineVolume& volume)
+{
+  std::vector<const PipelineLevel*> levels = { &volume };
+  for (const PipelineLevel& level : volume.Coarser)
+  {
+    levels.push_back(&level);
+  }
+  return levels;
+}
+
+std::vector<LevelGrid> GridsOf(const PipelineVolume& volume)
+{
+  std::vector<LevelGrid> grids = { { VolumeSize(volume.Samples), 0, 0 } };
+  for (const PipelineLevel& level : volume.Coarser)
+  {
+    grids.push_back(grids.back().Next(level.Samples));
+  }
+  return grids;
+}
+
+void CopyCounts(const std::array<std::int64_t, 3>& counts, glsl::ivec3& copy)
+{
+  std::copy(counts.begin(), counts.end(), copy);
+}
+
+glsl::Volume DescribeVolume(const std::vector<LevelGrid>& grids, const PipelineVolume& volume)
 {
   glsl::Volume block = {};
-  std::copy(size.Samples.begin(), size.Samples.end(), block.Samples);
-  std::copy(size.Blocks.begin(), size.Blocks.end(), block.Blocks);
-  std::copy(size.Macrocells.begin(), size.Macrocells.end(), block.Macrocells);
-  block.BlockBits = volume.Values.BlockBits;
-  block.ColorBlockBits = volume.Colors.BlockBits;
-  block.NumberOfBlocks = static_cast<std::uint32_t>(size.GetNumberOfBlocks());
-  block.NumberOfMacrocells = static_cast<std::uint32_t>(size.GetNumberOfMacrocells());
+  const std::vector<const PipelineLevel*> levels = LevelsOf(volume);
+  for (std::size_t i = 0; i < grids.size(); ++i)
+  {
+    const LevelGrid& grid = grids[i];
+    glsl::VolumeLevel& level = block.Levels[i];
+    CopyCounts(grid.Size.Samples, level.Samples);
+    CopyCounts(grid.Size.Blocks, level.Blocks);
+    CopyCounts(grid.Size.Macrocells, level.Macrocells);
+    level.FirstBlock = static_cast<std::uint32_t>(grid.FirstBlock);
+    level.FirstMacrocell = static_cast<std::uint32_t>(grid.FirstMacrocell);
+    std::copy(levels[i]->Halvings, levels[i]->Halvings + 3, level.Halvings);
+    block.NumberOfBlocks += static_cast<std::uint32_t>(grid.Size.GetNumberOfBlocks());
+    block.NumberOfMacrocells += static_cast<std::uint32_t>(grid.Size.GetNumberOfMacrocells());
+  }
+  CopyCounts(grids[0].Size.Samples, block.Samples);
+  CopyCounts(grids[0].Size.Blocks, block.Blocks);
+  CopyCounts(grids[0].Size.Macrocells, block.Macrocells);
   return block;
 }
 
@@ -90,10 +127,13 @@ void ProgressivePipeline::SetVolume(const PipelineVolume& volume)
 {
   this->Volume = volume;
   this->Size = VolumeSize(volume.Samples);
+  this->Levels = GridsOf(volume);
   this->VolumeLoaded = false;
   this->Started = false;
-  this->Needs.Blocks = this->Size.GetNumberOfBlocks();
-  this->Needs.Macrocells = this->Size.GetNumberOfMacrocells();
+  const LevelGrid& last = this->Levels.back();
+  this->Needs.Blocks = last.FirstBlock + last.Size.GetNumberOfBlocks();
+  this->Needs.Macrocells = last.FirstMacrocell + last.Size.GetNumberOfMacrocells();
+  this->Needs.Levels = !volume.Coarser.empty();
   this->Needs.StoredRanges = static_cast<bool>(volume.Ranges);
   this->Needs.Colored = volume.Colors.Data != nullptr;
   this->Needs.HiddenCells = !volume.Hidden.empty();
@@ -131,37 +171,49 @@ Status ProgressivePipeline::LoadVolume()
 Status ProgressivePipeline::UploadVolume()
 {
   const Stopwatch stopwatch;
-  this->Gpu->Uniforms.Upload(DescribeVolume(this->Size, this->Volume));
+  this->Gpu->Uniforms.Upload(DescribeVolume(this->Levels, this->Volume));
   this->Gpu->Buffers.Upload(Buffer::HiddenCells, this->Volume.Hidden);
   this->Gpu->Buffers.Upload(Buffer::HiddenColors, this->Volume.HiddenColors);
   this->Streams.Free();
-  Status status =
-    this->Streams.Upload(this->Gpu->Gl, Buffer::Stream, this->Volume.Values, this->Size);
-  if (status && this->Needs.Colored)
+  Status status;
+  const std::vector<const PipelineLevel*> levels = LevelsOf(this->Volume);
+  for (std::size_t i = 0; i < levels.size() && status; ++i)
   {
-    status =
-      this->Streams.Upload(this->Gpu->Gl, Buffer::ColorStream, this->Volume.Colors, this->Size);
-  }
-  if (status && this->Needs.StoredRanges)
-  {
-    this->UploadRanges();
+    status = this->UploadLevel(*levels[i], this->Levels[i]);
   }
   this->UploadMilliseconds = stopwatch.GetMilliseconds();
   return status;
 }
 
+Status ProgressivePipeline::UploadLevel(const PipelineLevel& level, const LevelGrid& grid)
+{
+  Context& gl = this->Gpu->Gl;
+  Status status = this->Streams.Upload(gl, Buffer::Stream, level.Values, grid);
+  if (status && this->Needs.Colored)
+  {
+    status = this->Streams.Upload(gl, Buffer::ColorStream, level.Colors, grid);
+  }
+  if (status && this->Needs.StoredRanges)
+  {
+    this->UploadRanges(level.Ranges, grid);
+  }
+  return status;
+}
+
 // A part at a time: the host keeps them in another form, and not twice.
-void ProgressivePipeline::UploadRanges()
+void ProgressivePipeline::UploadRanges(const RangeReader& ranges, const LevelGrid& grid)
 {
   const std::int64_t bytes = std::int64_t(sizeof(std::uint32_t)) * WordsOfMacrocell(this->Needs);
   const std::int64_t most = HostTransfer::MaximumStagingBytes / bytes;
+  const std::int64_t all = grid.Size.GetNumberOfMacrocells();
   const GLuint buffer = this->Gpu->Buffers.GetName(Buffer::Macrocells);
-  for (std::int64_t first = 0; first < this->Needs.Macrocells; first += most)
+  for (std::int64_t first = 0; first < all; first += most)
   {
-    const std::int64_t count = std::min(most, this->Needs.Macrocells - first);
+    const std::int64_t count = std::min(most, all - first);
     const std::vector<std::uint32_t> words =
-      DescribeMacrocells(this->Volume.Ranges, first, count, this->Needs);
-    this->Gpu->Transfer.Write(buffer, bytes * first, words.data(), bytes * count);
+      DescribeMacrocells(ranges, first, count, this->Needs);
+    this->Gpu->Transfer.Write(
+      buffer, bytes * (grid.FirstMacrocell + first), words.data(), bytes * count);
   }
 }
 

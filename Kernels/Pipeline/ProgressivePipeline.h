@@ -137,7 +137,8 @@ private:
   void FreeForPlan(bool reload);
   Status LoadVolume();
   Status UploadVolume();
-  void UploadRanges();
+  Status UploadLevel(const PipelineLevel& level, const LevelGrid& grid);
+  void UploadRanges(const RangeReader& ranges, const LevelGrid& grid);
   struct Preparation;
   bool RunSlices(const VolumeSlice& all, Preparation& preparation, SliceSize& size,
     const std::function<VolumeSlice(const VolumeSlice&)>& run);
@@ -168,7 +169,8 @@ private:
   std::unique_ptr<Device> Gpu = std::make_unique<Device>(); ///< its parts know each other's places
   StreamStore Streams;
   PipelineVolume Volume;
-  VolumeSize Size;
+  VolumeSize Size;               ///< of the volume itself
+  std::vector<LevelGrid> Levels; ///< of detail, the volume itself first
   PipelineSettings Settings;
   SceneNeeds Needs; ///< of the scene, which the GPU's buffers are made for
   glsl::Cache Cache = {};

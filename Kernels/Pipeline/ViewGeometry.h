@@ -22,6 +22,19 @@ struct ClippingPlane
   double Offset;
 };
 
+/// Beyond all depths: sums of two are finite, too.
+constexpr double EndlessDepth = 1e300;
+
+/// Up to which depth a level of detail is drawn, and from which on it goes over to the next: the
+/// weights of that at both depths, linear between them.
+struct LevelSpan
+{
+  double BlendFrom;
+  double Until;
+  double FirstWeight;
+  double LastWeight;
+};
+
 /// Has no gaps between its members, as views are compared byte by byte: value-initialize it.
 struct ViewGeometry
 {
@@ -49,7 +62,8 @@ struct ViewGeometry
   std::int32_t NumberOfIsovalues;
   std::int32_t NumberOfClippingPlanes;
   std::int32_t DrawnRegions; ///< a bit for each cropping region
-  std::int32_t Padding;
+  std::int32_t NumberOfLevels; ///< of detail that are drawn; 1: the volume itself
+  LevelSpan Levels[glsl::MAX_LEVELS]; ///< in the order of their depths
   glsl::FloatSum Isovalues[glsl::MAX_ISOVALUES]; ///< in the units of the stream
 };
 

@@ -69,11 +69,52 @@ Status Compress(const CompressedInput::Choice& choice, const std::function<void(
   compress->SetComponent(choice.Component);
   compress->SetMaskNonFinite(choice.MaskNonFinite);
   compress->SetKeepLabels(choice.KeepLabels);
+  compress->SetLevels(choice.Levels);
   const FirstError errors(compress);
   const ProgressTeller teller(compress, progress);
   compress->Update();
   compressed = compress->GetOutput();
   return errors.GetStatus();
+}
+
+// Number, the first block of each, then the bits of each: see HiddenCells in Buffers.glsl.
+std::vector<std::uint32_t> PackRuns(const std::vector<vtkBlockMask::Run>& runs)
+{
+  std::vector<std::uint32_t> words;
+  words.reserve(1 + 3 * runs.size());
+  words.push_back(static_cast<std::uint32_t>(runs.size()));
+  for (const vtkBlockMask::Run& run : runs)
+  {
+    words.push_back(static_cast<std::uint32_t>(run.First));
+  }
+  for (const vtkBlockMask::Run& run : runs)
+  {
+    words.push_back(static_cast<std::uint32_t>(run.Bits));
+    words.push_back(static_cast<std::uint32_t>(run.Bits >> 32));
+  }
+  return words;
+}
+
+PipelineLevel DescribeLevel(vtkCompressedVolume* volume, int level)
+{
+  vtkCompressedVolume* const own = LevelOf(volume, level);
+  PipelineLevel described;
+  described.Values = DescribeStream(own);
+  if (own->HasRanges())
+  {
+    described.Ranges = [ranges = own->GetRanges()](
+                         std::int64_t macrocell, std::uint32_t* range, std::uint32_t* blockRanges)
+    { ranges.GetMacrocell(macrocell, range, blockRanges); };
+  }
+  own->GetDimensions(described.Samples);
+  for (int axis = 0; axis < 3 && level > 0; ++axis)
+  {
+    for (int step = own->GetSteps()[axis]; step > 1; step /= 2)
+    {
+      ++described.Halvings[axis];
+    }
+  }
+  return described;
 }
 }
 
@@ -109,7 +150,7 @@ Status CompressedInput::Update(const Choice& choice)
   vtkDataArray* array = choice.Array;
   const Key key = { choice.Image, choice.Image->GetMTime(), array, array ? array->GetMTime() : 0,
     array ? choice.Rate : 0.0, array ? choice.Component : 0, array && choice.MaskNonFinite,
-    array && choice.KeepLabels };
+    array && choice.KeepLabels, array ? choice.Levels : 0 };
   if (key != this->Source)
   {
     this->Release();
@@ -138,25 +179,26 @@ Status CompressedInput::Read(const Choice& choice)
   return Status();
 }
 
-std::vector<std::uint32_t> DescribeHidden(const vtkBlockMask& mask)
+std::vector<std::uint32_t> DescribeHidden(const std::vector<HiddenInLevel>& levels)
 {
-  const std::vector<vtkBlockMask::Run>& runs = mask.GetRuns();
-  std::vector<std::uint32_t> words;
-  if (!runs.empty())
+  std::vector<vtkBlockMask::Run> runs;
+  bool any = false;
+  vtkTypeUInt64 firstBlock = 0;
+  for (const HiddenInLevel& level : levels)
   {
-    words.reserve(1 + 3 * runs.size());
-    words.push_back(static_cast<std::uint32_t>(runs.size()));
-    for (const vtkBlockMask::Run& run : runs)
+    const std::vector<vtkBlockMask::Run>& own = level.Mask.GetRuns();
+    any = any || !own.empty();
+    if (own.empty())
     {
-      words.push_back(static_cast<std::uint32_t>(run.First));
+      runs.push_back({ firstBlock, 0 });
     }
-    for (const vtkBlockMask::Run& run : runs)
+    for (const vtkBlockMask::Run& run : own)
     {
-      words.push_back(static_cast<std::uint32_t>(run.Bits));
-      words.push_back(static_cast<std::uint32_t>(run.Bits >> 32));
+      runs.push_back({ firstBlock + run.First, run.Bits });
     }
+    firstBlock += level.Blocks;
   }
-  return words;
+  return any ? PackRuns(runs) : std::vector<std::uint32_t>();
 }
 
 // Whole words of 64 bits, as zfp writes them.
@@ -170,17 +212,36 @@ CompressedStream DescribeStream(vtkCompressedVolume* volume)
   return stream;
 }
 
-PipelineVolume DescribeVolume(vtkCompressedVolume* volume)
+PipelineVolume DescribeVolume(vtkCompressedVolume* volume, int levels)
 {
   PipelineVolume described;
-  described.Values = DescribeStream(volume);
-  if (volume->HasRanges())
+  static_cast<PipelineLevel&>(described) = DescribeLevel(volume, 0);
+  std::vector<HiddenInLevel> hidden;
+  for (int level = 0; level <= levels; ++level)
   {
-    described.Ranges = [ranges = volume->GetRanges()](
-                         std::int64_t macrocell, std::uint32_t* range, std::uint32_t* blockRanges)
-    { ranges.GetMacrocell(macrocell, range, blockRanges); };
+    vtkCompressedVolume* const own = LevelOf(volume, level);
+    hidden.push_back({ own->GetCellsWithoutSurface(), own->GetNumberOfBlocks() });
+    if (level > 0)
+    {
+      described.Coarser.push_back(DescribeLevel(volume, level));
+    }
   }
-  described.Hidden = DescribeHidden(volume->GetCellsWithoutSurface());
-  volume->GetDimensions(described.Samples);
+  described.Hidden = DescribeHidden(hidden);
   return described;
+}
+
+std::vector<std::uint32_t> DescribeHiddenSamples(vtkCompressedVolume* volume, int levels)
+{
+  std::vector<HiddenInLevel> hidden;
+  for (int level = 0; level <= levels; ++level)
+  {
+    vtkCompressedVolume* const own = LevelOf(volume, level);
+    hidden.push_back({ own->GetHiddenSamples(), own->GetNumberOfBlocks() });
+  }
+  return DescribeHidden(hidden);
+}
+
+vtkCompressedVolume* LevelOf(vtkCompressedVolume* volume, int level)
+{
+  return level == 0 ? volume : volume->GetLevel(level);
 }

@@ -8,6 +8,7 @@
 #include "Pipeline/ProgressivePipeline.h"
 #include "Status.h"
 
+#include "vtkBlockMask.h"
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
 #include "vtkTimeStamp.h"
@@ -18,7 +19,6 @@
 #include <utility>
 #include <vector>
 
-class vtkBlockMask;
 class vtkCompressedVolume;
 class vtkDataArray;
 class vtkImageData;
@@ -36,6 +36,7 @@ public:
     double Rate = 8.0;
     bool MaskNonFinite = true;
     bool KeepLabels = false;
+    int Levels = 0; ///< of detail that a plain one gets
   };
 
   CompressedInput();
@@ -63,10 +64,10 @@ public:
 private:
   Status Read(const Choice& choice);
 
-  /// Image and array with their times, rate, component, mask and labels: a change of any of them
-  /// changes the volume.
-  using Key =
-    std::tuple<vtkImageData*, vtkMTimeType, vtkDataArray*, vtkMTimeType, double, int, bool, bool>;
+  /// Image and array with their times, rate, component, mask, labels and levels: a change of any of
+  /// them changes the volume.
+  using Key = std::tuple<vtkImageData*, vtkMTimeType, vtkDataArray*, vtkMTimeType, double, int,
+    bool, bool, int>;
 
   vtkSmartPointer<vtkImageData> Image;
   vtkNew<vtkCompressedVolume> Volume;
@@ -76,11 +77,24 @@ private:
   vtkTimeStamp Time;
 };
 
+/// What a level of detail hides, and the number of its blocks.
+struct HiddenInLevel
+{
+  vtkBlockMask Mask;
+  std::int64_t Blocks;
+};
+
 ///@{ What the pipeline uploads of a compressed volume. It shares the ownership of the stream.
 CompressedStream DescribeStream(vtkCompressedVolume* volume);
-PipelineVolume DescribeVolume(vtkCompressedVolume* volume);
-/// Packs the runs of a mask as Buffers.glsl reads them.
-std::vector<std::uint32_t> DescribeHidden(const vtkBlockMask& mask);
+/// `levels`: how many coarser levels of detail, which have ranges.
+PipelineVolume DescribeVolume(vtkCompressedVolume* volume, int levels = 0);
+/// What the samples of the volume, and of so many coarser levels, hide.
+std::vector<std::uint32_t> DescribeHiddenSamples(vtkCompressedVolume* volume, int levels);
+/// The volume itself, which is level 0, or a coarser one.
+vtkCompressedVolume* LevelOf(vtkCompressedVolume* volume, int level);
+/// Packs the runs of masks of levels of detail, the volume's first, as Buffers.glsl reads them:
+/// blocks are numbered through all levels. Empty if none hides anything.
+std::vector<std::uint32_t> DescribeHidden(const std::vector<HiddenInLevel>& levels);
 ///@}
 
 #endif

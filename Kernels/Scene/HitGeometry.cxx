@@ -45,21 +45,32 @@ void EyePosition(const ViewGeometry& view, int x, int y, double t, double positi
   }
 }
 
+std::vector<double> HitDepths(const ViewGeometry& view, const std::vector<std::uint32_t>& keys,
+  const std::vector<float>& firstParameters)
+{
+  const DrawnDepths depths = FindDrawnDepths(view);
+  std::vector<double> found(keys.size());
+  for (std::size_t pixel = 0; pixel < keys.size(); ++pixel)
+  {
+    const double last = HitDepth(depths, keys[pixel]);
+    const bool isTranslucent = !firstParameters.empty() && std::isfinite(last);
+    found[pixel] = isTranslucent ? firstParameters[pixel] : last;
+  }
+  return found;
+}
+
 std::vector<float> HitDistances(const ViewGeometry& view, const std::vector<std::uint32_t>& keys,
   const std::vector<float>& firstParameters)
 {
   const std::size_t width = view.ViewportSize[0];
   std::vector<float> distances(
     width * view.ViewportSize[1], std::numeric_limits<float>::infinity());
-  const DrawnDepths depths = FindDrawnDepths(view);
-  for (std::size_t pixel = 0; pixel < keys.size(); ++pixel)
+  const std::vector<double> depths = HitDepths(view, keys, firstParameters);
+  for (std::size_t pixel = 0; pixel < depths.size(); ++pixel)
   {
     const int x = view.ImageOrigin[0] + static_cast<int>(pixel % view.ImageSize[0]);
     const int y = view.ImageOrigin[1] + static_cast<int>(pixel / view.ImageSize[0]);
-    const double last = HitDepth(depths, keys[pixel]);
-    const bool isTranslucent = !firstParameters.empty() && std::isfinite(last);
-    const double t = isTranslucent ? firstParameters[pixel] : last;
-    distances[y * width + x] = static_cast<float>(RayLength(view, x, y, t));
+    distances[y * width + x] = static_cast<float>(RayLength(view, x, y, depths[pixel]));
   }
   return distances;
 }

@@ -17,9 +17,13 @@ std::optional<std::int64_t> ImagePixel(const ViewGeometry& view, int x, int y);
 /// the place with parameter t on a ray.
 double RayLength(const ViewGeometry& view, int x, int y, double t);
 
-/// Finds the distances of the hits of all of the viewport's pixels, infinity for none. The keys, of
-/// the image's pixels, are those of the last hits in a translucent image; `firstParameters` are
-/// then the parameters of the first, otherwise empty.
+/// Finds the depths along the view direction of the hits of the image's pixels, infinity for none.
+/// The keys are those of the last hits in a translucent image; `firstParameters` are then the
+/// parameters of the first, otherwise empty.
+std::vector<double> HitDepths(const ViewGeometry& view, const std::vector<std::uint32_t>& keys,
+  const std::vector<float>& firstParameters);
+
+/// Finds the distances of the hits of all of the viewport's pixels, likewise.
 std::vector<float> HitDistances(const ViewGeometry& view, const std::vector<std::uint32_t>& keys,
   const std::vector<float>& firstParameters);
 

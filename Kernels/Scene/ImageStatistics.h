@@ -70,6 +70,7 @@ struct ImageStatistics
   std::int64_t LeastMemoryBudget = 0;
   std::vector<std::pair<std::string, double>> Stages; ///< that ran, and their milliseconds
   std::vector<std::string> StagesLeftOut;
+  std::vector<std::int64_t> LevelPixels; ///< hits in each level of detail
   bool Converged = false;
   std::string GLDescription;
 };

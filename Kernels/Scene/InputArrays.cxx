@@ -28,12 +28,21 @@ vtkDataArray* FindArray(const ArrayChoice& choice, vtkImageData* image, bool& ce
   cellData = cellFlag == 1;
   return array;
 }
+
+// Smaller volumes get no levels.
+constexpr int LargestWithoutLevels = 64;
+
+bool HasSameShape(vtkCompressedVolume* a, vtkCompressedVolume* b)
+{
+  return std::equal(a->GetDimensions(), a->GetDimensions() + 3, b->GetDimensions()) &&
+    std::equal(a->GetSteps(), a->GetSteps() + 3, b->GetSteps());
+}
 }
 
 Status InputArrays::UpdateValues(const ArrayChoice& choice, vtkImageData* image)
 {
   CompressedInput::Choice values = { image, nullptr, false, choice.Component, choice.Rate,
-    choice.MaskNonFinite, choice.KeepLabels };
+    choice.MaskNonFinite, choice.KeepLabels, choice.Levels };
   if (!vtkCompressedVolume::IsCompressed(image))
   {
     values.Array = FindArray(choice, image, values.CellData);
@@ -48,7 +57,7 @@ Status InputArrays::UpdateValues(const ArrayChoice& choice, vtkImageData* image)
 Status InputArrays::UpdateColorsFromImage(const ArrayChoice& choice, vtkImageData* image)
 {
   CompressedInput::Choice colors = { image, nullptr, this->HasCellData(), choice.ColorComponent,
-    choice.Rate, choice.MaskNonFinite, choice.KeepLabels };
+    choice.Rate, choice.MaskNonFinite, choice.KeepLabels, choice.Levels };
   const bool compressed = image && vtkCompressedVolume::IsCompressed(image);
   if (image && !compressed)
   {
@@ -74,7 +83,7 @@ Status InputArrays::UpdateColorsFromArray(const ArrayChoice& choice, vtkImageDat
       "port 1");
   }
   return this->UpdateColors({ image, array, cellData, choice.ColorComponent, choice.Rate,
-    choice.MaskNonFinite, choice.KeepLabels });
+    choice.MaskNonFinite, choice.KeepLabels, choice.Levels });
 }
 
 void InputArrays::SetProgress(const std::function<void(double)>& progress)
@@ -102,13 +111,46 @@ vtkMTimeType InputArrays::GetTime() const
   return std::max(this->Values.GetTime(), this->Colors.GetTime());
 }
 
-PipelineVolume InputArrays::Describe() const
+int InputArrays::CountLevels() const
 {
-  PipelineVolume volume = DescribeVolume(this->Values.GetVolume());
+  vtkCompressedVolume* const values = this->Values.GetVolume();
+  vtkCompressedVolume* const colors = this->Colors.GetImage() ? this->Colors.GetVolume() : nullptr;
+  const int number = values->GetNumberOfLevels();
+  bool drawn = !colors || colors->GetNumberOfLevels() == number;
+  for (int level = 0; level <= number && drawn; ++level)
+  {
+    drawn = LevelOf(values, level)->HasRanges() &&
+      (!colors || HasSameShape(LevelOf(values, level), LevelOf(colors, level)));
+  }
+  return drawn ? number : 0;
+}
+
+std::string InputArrays::DescribeLackOfLevels() const
+{
+  vtkCompressedVolume* const values = this->Values.GetVolume();
+  const int* samples = values->GetDimensions();
+  if (this->CountLevels() > 0 || *std::max_element(samples, samples + 3) <= LargestWithoutLevels)
+  {
+    return "";
+  }
+  return values->GetNumberOfLevels() == 0
+    ? "the compressed volume has no levels of detail: compress it with levels"
+    : "its levels of detail lack ranges of values, or the colours' volume has not the same levels: "
+      "compress both again, with levels";
+}
+
+PipelineVolume InputArrays::Describe(int levels) const
+{
+  PipelineVolume volume = DescribeVolume(this->Values.GetVolume(), levels);
   if (this->Colors.GetImage())
   {
-    volume.Colors = DescribeStream(this->Colors.GetVolume());
-    volume.HiddenColors = DescribeHidden(this->Colors.GetVolume()->GetHiddenSamples());
+    vtkCompressedVolume* const colors = this->Colors.GetVolume();
+    volume.Colors = DescribeStream(colors);
+    for (int level = 1; level <= levels; ++level)
+    {
+      volume.Coarser[level - 1].Colors = DescribeStream(colors->GetLevel(level));
+    }
+    volume.HiddenColors = DescribeHiddenSamples(colors, levels);
   }
   return volume;
 }

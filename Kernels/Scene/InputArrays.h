@@ -7,6 +7,8 @@
 
 #include "Scene/CompressedInput.h"
 
+#include <string>
+
 class vtkDataArray;
 class vtkImageData;
 
@@ -25,6 +27,7 @@ struct ArrayChoice
   double Rate = 8.0;
   bool MaskNonFinite = true;
   bool KeepLabels = false;
+  int Levels = 0; ///< of detail that plain ones get
 };
 
 class InputArrays
@@ -52,8 +55,12 @@ public:
   }
   /// When one of them last changed.
   vtkMTimeType GetTime() const;
-  /// Both, as the pipeline takes them.
-  PipelineVolume Describe() const;
+  /// Counts the coarser levels of detail that can be drawn: with ranges, and of both volumes.
+  int CountLevels() const;
+  /// Says why there are none, as the end of a sentence; empty if there are, or need not be any.
+  std::string DescribeLackOfLevels() const;
+  /// Both, as the pipeline takes them, with so many coarser levels.
+  PipelineVolume Describe(int levels = 0) const;
 
 private:
   Status UpdateColors(const CompressedInput::Choice& choice);

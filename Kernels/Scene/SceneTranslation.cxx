@@ -34,8 +34,7 @@ void FindEyeToIndex(vtkMatrix4x4* worldToEye, vtkMatrix4x4* indexToWorld, vtkMat
 }
 
 PipelineScene TranslateScene(vtkRenderer* renderer, vtkVolume* prop, vtkVolumeMapper* mapper,
-  vtkImageData* image, vtkCompressedVolume* volume, const int viewport[4], int reduction,
-  int litSides)
+  vtkImageData* image, vtkCompressedVolume* volume, const SceneChoice& choice)
 {
   PipelineScene scene;
   ViewGeometry& view = scene.View;
@@ -51,12 +50,18 @@ PipelineScene TranslateScene(vtkRenderer* renderer, vtkVolume* prop, vtkVolumeMa
 
   for (int axis = 0; axis < 2; ++axis)
   {
-    view.WindowSize[axis] = viewport[axis];
-    view.ViewportSize[axis] = (viewport[axis] + reduction - 1) / reduction;
+    const int pixels = choice.Viewport[axis];
+    view.WindowSize[axis] = pixels;
+    view.ViewportSize[axis] = (pixels + choice.ImageReduction - 1) / choice.ImageReduction;
   }
-  std::copy(viewport + 2, viewport + 4, view.ViewportOrigin);
+  std::copy(choice.Viewport + 2, choice.Viewport + 4, view.ViewportOrigin);
   TranslateRays(projection, eyeToIndex, view);
   camera->GetClippingRange(view.NearDistance, view.FarDistance);
+  TranslateNoLevels(view);
+  if (!choice.Levels.empty() && HasRays(view))
+  {
+    TranslateLevels(eyeToIndex, choice.Levels, choice.PixelTolerance, view);
+  }
   TranslateExtent(image, volume, view);
   FindImage(view);
   TranslateClipping(mapper->GetClippingPlanes(), worldToIndex, view);
@@ -68,7 +73,7 @@ PipelineScene TranslateScene(vtkRenderer* renderer, vtkVolume* prop, vtkVolumeMa
   TranslateMaterial(property, scene.Look);
   if (property->GetShade())
   {
-    TranslateShading(renderer->GetLights(), litSides, worldToEye, scene);
+    TranslateShading(renderer->GetLights(), choice.LitSides, worldToEye, scene);
   }
   return scene;
 }

@@ -5,6 +5,9 @@
 #define SceneTranslation_h
 
 #include "Pipeline/PipelineScene.h"
+#include "Scene/LevelTranslation.h"
+
+#include <vector>
 
 class vtkCompressedVolume;
 class vtkImageData;
@@ -12,12 +15,19 @@ class vtkRenderer;
 class vtkVolume;
 class vtkVolumeMapper;
 
+/// What a mapper's properties, and its renderer, ask for.
+struct SceneChoice
+{
+  int Viewport[4] = {};   ///< width, height and origin, in pixels, of what is drawn into
+  int ImageReduction = 1; ///< how many of these pixels there are to a ray on each axis
+  int LitSides = 0;       ///< see Constants.glsl.h
+  std::vector<LevelSteps> Levels; ///< of detail to choose from; empty: the volume itself is drawn
+  double PixelTolerance = 1.0;    ///< how many pixels the samples of a level may be apart
+};
+
 /// Translates a volume as a renderer's camera sees it: rays, image, isovalues, clipping, cropping,
-/// lights and material. `viewport`: width, height and origin, in pixels, of what is drawn into.
-/// `reduction`: how many of these pixels there are to a ray on each axis. `litSides`: see
-/// Constants.glsl.h.
+/// levels of detail, lights and material.
 PipelineScene TranslateScene(vtkRenderer* renderer, vtkVolume* prop, vtkVolumeMapper* mapper,
-  vtkImageData* image, vtkCompressedVolume* volume, const int viewport[4], int reduction,
-  int litSides);
+  vtkImageData* image, vtkCompressedVolume* volume, const SceneChoice& choice);
 
 #endif

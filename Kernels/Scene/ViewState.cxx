@@ -37,6 +37,14 @@ bool NearlySame(const PixelVector& a, const PixelVector& b)
   return NearlySame(a.Base, b.Base) && NearlySame(a.PerX, b.PerX) && NearlySame(a.PerY, b.PerY);
 }
 
+bool NearlySame(const LevelSpan& a, const LevelSpan& b)
+{
+  const double ofA[] = { a.BlendFrom, a.Until, 0.0 }, ofB[] = { b.BlendFrom, b.Until, 0.0 };
+  const double weightsOfA[] = { a.FirstWeight, a.LastWeight, 1.0 };
+  const double weightsOfB[] = { b.FirstWeight, b.LastWeight, 1.0 };
+  return NearlySame(ofA, ofB) && NearlySame(weightsOfA, weightsOfB);
+}
+
 bool HasSameLook(const glsl::Look& a, const glsl::Look& b)
 {
   // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): 0 and -0 only cost an image
@@ -72,6 +80,14 @@ bool HasSameHits(const ViewGeometry& a, const ViewGeometry& b)
       return false;
     }
     exact.*vector = a.*vector;
+  }
+  for (int level = 0; level < glsl::MAX_LEVELS; ++level)
+  {
+    if (!NearlySame(a.Levels[level], b.Levels[level]))
+    {
+      return false;
+    }
+    exact.Levels[level] = a.Levels[level];
   }
   std::copy(std::begin(a.Depth), std::end(a.Depth), exact.Depth);
   const double rangeOfA[] = { a.NearDistance, a.FarDistance, 0.0 };

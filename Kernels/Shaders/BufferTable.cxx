@@ -76,9 +76,11 @@ const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers()
       [](const E& e) { return BytesOfMacrocell(e) * e.Macrocells; }, Access::Write,
       "ranges of values of macrocells and their blocks; with a cache the map page, "
       "and which blocks are requested" },
-    { Buffer::BlockMarks, "block_marks", "BLOCK_MARKS", Lifetime::Volume, Always, "0.13 *B*",
-      [](const E& e) { return 8 * e.Macrocells; }, Access::None,
-      "which blocks' ranges hold one of the isovalues, a bit each" },
+    { Buffer::BlockMarks, "block_marks", "BLOCK_MARKS", Lifetime::Volume, Always,
+      "0.13 *B*, with levels of detail 0.25 *B*",
+      [](const E& e) { return (e.Levels ? 16 : 8) * e.Macrocells; }, Access::None,
+      "which blocks' ranges hold one of the isovalues, a bit each; and those with what they blend "
+      "with on the next level" },
     { Buffer::HiddenCells, "hidden_cells", "HIDDEN_CELLS", Lifetime::Volume, Hidden,
       "12 for each run of blocks that are alike", [](const E& e) { return 4 * e.HiddenWords; },
       Access::Write, "which cells have no surface" },

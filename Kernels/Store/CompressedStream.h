@@ -46,4 +46,19 @@ private:
   static std::int64_t Product(const std::array<std::int64_t, 3>& n) { return n[0] * n[1] * n[2]; }
 };
 
+/// The grid of a level of detail: blocks and macrocells are numbered through all levels.
+struct LevelGrid
+{
+  VolumeSize Size;
+  std::int64_t FirstBlock = 0;
+  std::int64_t FirstMacrocell = 0;
+
+  /// The grid of the next level.
+  LevelGrid Next(const int samples[3]) const
+  {
+    return { VolumeSize(samples), this->FirstBlock + this->Size.GetNumberOfBlocks(),
+      this->FirstMacrocell + this->Size.GetNumberOfMacrocells() };
+  }
+};
+
 #endif

@@ -6,14 +6,16 @@
 
 namespace
 {
-BoundSegment Describe(GLuint buffer, const StreamSegment& segment)
+BoundSegment Describe(
+  GLuint buffer, const StreamSegment& segment, const LevelGrid& grid, int blockBits)
 {
   BoundSegment bound = { buffer, {}, {} };
-  bound.Place.FirstBlock = segment.FirstBlock;
+  bound.Place.FirstBlock = static_cast<std::uint32_t>(grid.FirstBlock + segment.FirstBlock);
   bound.Place.Blocks = segment.Blocks;
   bound.Place.FirstBit = segment.FirstBit;
   bound.Place.Words = static_cast<std::uint32_t>(segment.Bytes / 4);
-  bound.Macrocells.First = segment.FirstMacrocell;
+  bound.Place.BlockBits = static_cast<std::uint32_t>(blockBits);
+  bound.Macrocells.First = grid.FirstMacrocell + segment.FirstMacrocell;
   bound.Macrocells.End = bound.Macrocells.First + segment.Macrocells;
   return bound;
 }
@@ -21,10 +23,10 @@ BoundSegment Describe(GLuint buffer, const StreamSegment& segment)
 
 // The stages only read a stream, and it may be too large for a second copy: no staging.
 Status StreamStore::Upload(
-  Context& context, Buffer buffer, const CompressedStream& stream, const VolumeSize& size)
+  Context& context, Buffer buffer, const CompressedStream& stream, const LevelGrid& grid)
 {
   std::vector<StreamSegment> segments;
-  const Status split = SplitStream(stream, size, context.GetLimits().LargestBuffer, segments);
+  const Status split = SplitStream(stream, grid.Size, context.GetLimits().LargestBuffer, segments);
   if (!split)
   {
     return context.Fail(split);
@@ -39,7 +41,7 @@ Status StreamStore::Upload(
     {
       return made;
     }
-    uploaded.Segments.push_back(Describe(name, segment));
+    uploaded.Segments.push_back(Describe(name, segment, grid, stream.BlockBits));
     uploaded.Bytes += segment.Bytes;
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
     glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(segment.Bytes),

@@ -14,9 +14,9 @@
 class StreamStore
 {
 public:
-  /// Uploads a stream; `buffer` is Stream or ColorStream.
+  /// Uploads the stream of a level of detail; `buffer` is Stream or ColorStream.
   Status Upload(
-    Context& context, Buffer buffer, const CompressedStream& stream, const VolumeSize& size);
+    Context& context, Buffer buffer, const CompressedStream& stream, const LevelGrid& grid);
   void Free();
 
   /// What a stage is dispatched over: the stream that it reads. Empty where it reads none, or the

@@ -13,6 +13,7 @@
 const int MAX_LIGHTS = 16;
 const int MAX_ISOVALUES = 256;
 const int MAX_CLIPPING_PLANES = 16;
+const int MAX_LEVELS = 12;             // of detail, the volume itself among them
 const int ALL_REGIONS = (1 << 27) - 1; // a bit for each cropping region
 const int PALETTE_SIZE = 768;          // nodes: with all else 16 KiB, as OpenGL 4.3 guarantees
 

@@ -56,6 +56,20 @@ struct FloatSum
   float Padding1;
 };
 
+// Parameters of rays: up to which a level of detail is drawn, and from which on it goes over to the
+// next, with the weights of that at both. Words of 32 bits.
+struct LevelSpan
+{
+  int BlendHigh;
+  uint BlendLow;
+  int UntilHigh;
+  uint UntilLow;
+  float FirstWeight;
+  float LastWeight;
+  float Padding0;
+  float Padding1;
+};
+
 // What decides which hits rays have: any change restarts the image. From the mapper.
 UNIFORM_BLOCK(View, VIEW_BINDING)
 {
@@ -79,11 +93,13 @@ UNIFORM_BLOCK(View, VIEW_BINDING)
   ivec2 ViewportSize;     // in pixels, of which each is one of the window's or a rectangle of them
   ivec2 ViewportOrigin;   // in the window
   vec2 PixelsPerFragment; // on each axis, 1 or less
-  vec2 Padding0;
+  int NumberOfLevels;     // of detail that are drawn
+  int Padding0;
   int DrawnRegions; // a bit for each cropping region
   int HasRays;      // 0: no ray meets what is drawn
   float FirstDepth; // of the origins
   float DepthOfWay;
+  LevelSpan Levels[MAX_LEVELS];
   FloatSum Isovalues[MAX_ISOVALUES]; // in the units of the stream
 }
 INSTANCE(view);
@@ -132,19 +148,29 @@ UNIFORM_BLOCK(Look, LOOK_BINDING)
 }
 INSTANCE(look);
 
+// The grid of a level of detail. Blocks and macrocells are numbered through all levels.
+struct VolumeLevel
+{
+  ivec3 Samples;
+  uint FirstBlock;
+  ivec3 Blocks;
+  uint FirstMacrocell;
+  ivec3 Macrocells;
+  int Padding0;
+  ivec3 Halvings; // how often each axis has every second sample of the volume itself
+  int Padding1;
+};
+
 // From the pipeline, once a volume.
 UNIFORM_BLOCK(Volume, VOLUME_BINDING)
 {
   ivec3 Samples;
-  int BlockBits;
+  uint NumberOfBlocks; // of all levels
   ivec3 Blocks;
-  uint NumberOfBlocks;
+  uint NumberOfMacrocells; // likewise
   ivec3 Macrocells;
-  uint NumberOfMacrocells;
-  int ColorBlockBits; // of the stream that gives the colours
   int Padding0;
-  int Padding1;
-  int Padding2;
+  VolumeLevel Levels[MAX_LEVELS]; // the volume itself first
 }
 INSTANCE(volume);
 

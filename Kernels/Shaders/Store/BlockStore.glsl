@@ -1,7 +1,7 @@
 // Where a block's bits lie, which no other file knows, and a cursor that reads them. Block i of a
 // fixed-rate ZFP stream begins at bit i * BlockBits, which may need more than 32 bits and is not
-// aligned. A stream that is longer than one buffer can be lies in segments of whole layers of
-// macrocells; a dispatch sees one of them.
+// aligned. Each level of detail has a stream of its own. A stream that is longer than one buffer can
+// be lies in segments of whole layers of macrocells; a dispatch sees one segment of one stream.
 
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
@@ -14,20 +14,11 @@ bool InSegment(uint block)
   return block - segment.FirstBlock < segment.Blocks;
 }
 
-uint BlockBits()
-{
-#ifdef DECODES_COLORS
-  return uint(volume.ColorBlockBits);
-#else
-  return uint(volume.BlockBits);
-#endif
-}
-
 // Word and bit at which a block begins.
 uvec2 BlockStart(uint block)
 {
   uint high, low, carry;
-  umulExtended(block - segment.FirstBlock, BlockBits(), high, low);
+  umulExtended(block - segment.FirstBlock, segment.BlockBits, high, low);
   low = uaddCarry(low, segment.FirstBit, carry);
   high += carry;
   return uvec2((high << 27) | (low >> 5), low & 31u);

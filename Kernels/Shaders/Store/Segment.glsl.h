@@ -9,4 +9,5 @@ struct Segment
   uint Blocks;
   uint FirstBit; // of the first block, in the first word
   uint Words;
+  uint BlockBits;
 };

@@ -257,7 +257,7 @@ int DecodeBlock(uint block, uint lane)
   BitCursor bits = OpenBlock(block);
   bool hasBits = ReadBits(bits, 1u) != 0u;
   int exponent = int(ReadBits(bits, ZFP_EXPONENT_BITS)) - ZFP_EXPONENT_BIAS - 30;
-  DecodePlanes(bits, hasBits ? BlockBits() - 1u - ZFP_EXPONENT_BITS : 0u, lane);
+  DecodePlanes(bits, hasBits ? segment.BlockBits - 1u - ZFP_EXPONENT_BITS : 0u, lane);
   for (uint part = 0u; part < 2u; ++part)
   {
     TransposePlanes(32u * part, lane);
