@@ -754,15 +754,17 @@ ImageStatistics vtkProgressiveIsosurfaceMapper::CollectFigures(bool detailed)
   image.TotalMilliseconds = std::max(impl.TotalMilliseconds, passes);
   image.InputMilliseconds = impl.InputMilliseconds;
   image.HostBytes = impl.Inputs.GetHostBytes();
-  image.LevelPixels = this->CountPixelsOfLevels();
+  this->CountPixelsOfLevels(image);
   return image;
 }
 
-std::vector<vtkTypeInt64> vtkProgressiveIsosurfaceMapper::CountPixelsOfLevels()
+// Of the image as far as it has come.
+void vtkProgressiveIsosurfaceMapper::CountPixelsOfLevels(ImageStatistics& statistics)
 {
   Internals& impl = *this->Impl;
   const PipelineScene& scene = impl.View.GetScene();
-  std::vector<vtkTypeInt64> pixels(std::max(scene.View.NumberOfLevels, 1), 0);
+  std::vector<std::int64_t>& pixels = statistics.LevelPixels;
+  pixels.assign(std::max(scene.View.NumberOfLevels, 1), 0);
   if (!IsEmpty(scene.View) && impl.Pipeline.GetStatus() && impl.Pipeline.IsStarted())
   {
     const std::vector<std::uint32_t> keys = impl.Pipeline.GetHits().ReadKeys();
@@ -776,7 +778,6 @@ std::vector<vtkTypeInt64> vtkProgressiveIsosurfaceMapper::CountPixelsOfLevels()
       }
     }
   }
-  return pixels;
 }
 
 //------------------------------------------------------------------------------

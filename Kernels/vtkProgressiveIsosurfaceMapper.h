@@ -57,7 +57,6 @@
 
 #include <memory> // for the implementation
 #include <string> // for messages
-#include <vector> // for figures
 
 class Status;
 class vtkAlgorithmOutput;
@@ -483,7 +482,7 @@ private:
   bool Continues(const Status& pipelineStatus);
   void ReleaseGraphics(vtkWindow* window);
   ImageStatistics CollectFigures(bool detailed);
-  std::vector<vtkTypeInt64> CountPixelsOfLevels();
+  void CountPixelsOfLevels(ImageStatistics& statistics);
   bool HasImage();
 
   struct Internals;
