@@ -100,7 +100,7 @@ const Members BlockMembers = {
 
   MEMBER(Volume, Samples), MEMBER(Volume, NumberOfBlocks),
   MEMBER(Volume, Blocks), MEMBER(Volume, NumberOfMacrocells),
-  MEMBER(Volume, Macrocells), MEMBER(Volume, Padding0),
+  MEMBER(Volume, Macrocells), MEMBER(Volume, NumberOfLevels),
   ELEMENTS(Volume, Levels, Samples), ELEMENTS(Volume, Levels, FirstBlock),
   ELEMENTS(Volume, Levels, Blocks), ELEMENTS(Volume, Levels, FirstMacrocell),
   ELEMENTS(Volume, Levels, Macrocells), ELEMENTS(Volume, Levels, Padding0),

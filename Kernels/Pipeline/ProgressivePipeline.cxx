@@ -62,6 +62,7 @@ glsl::Volume DescribeVolume(const std::vector<LevelGrid>& grids, const PipelineV
     level.FirstMacrocell = static_cast<std::uint32_t>(grid.FirstMacrocell);
     std::copy(levels[i]->Halvings, levels[i]->Halvings + 3, level.Halvings);
     block.NumberOfBlocks += static_cast<std::uint32_t>(grid.Size.GetNumberOfBlocks());
+    ++block.NumberOfLevels;
     block.NumberOfMacrocells += static_cast<std::uint32_t>(grid.Size.GetNumberOfMacrocells());
   }
   CopyCounts(grids[0].Size.Samples, block.Samples);

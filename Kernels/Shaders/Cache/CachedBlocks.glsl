@@ -40,6 +40,20 @@ uvec3 NextSampleOffsets(ivec3 planes, uvec3 offsets)
 // indexes them: what is indexed by a variable does not stay in registers.
 uvec4 lowSlots, highSlots;
 
+#ifdef LEVELS
+uvec4 lowSlotsAside, highSlotsAside; // of the other level, where two blend
+
+// Exchanges the slots that were found last and those aside.
+void ExchangeSlots()
+{
+  uvec4 low = lowSlots, high = highSlots;
+  lowSlots = lowSlotsAside;
+  highSlots = highSlotsAside;
+  lowSlotsAside = low;
+  highSlotsAside = high;
+}
+#endif
+
 // What a block adds on each axis to the number of its macrocell, and to its own there.
 struct PlaceInMap
 {
@@ -48,9 +62,9 @@ struct PlaceInMap
 
 PlaceInMap PlaceOf(ivec3 block)
 {
-  uvec3 strides = uvec3(1, volume.Macrocells.x, volume.Macrocells.x * volume.Macrocells.y);
+  uvec3 strides = uvec3(1, GRID.Macrocells.x, GRID.Macrocells.x * GRID.Macrocells.y);
   const uvec3 localStrides = uvec3(1, MACROCELL_SIDE, MACROCELL_SIDE * MACROCELL_SIDE);
-  return PlaceInMap(uvec3(MacrocellOf(block)) * strides,
+  return PlaceInMap(uvec3(MacrocellOf(block)) * strides + uvec3(FirstMacrocell(), 0, 0),
     (uvec3(block) & uint(MACROCELL_SIDE - 1)) * localStrides);
 }
 

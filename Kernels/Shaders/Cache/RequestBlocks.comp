@@ -7,24 +7,46 @@
 #include "Shared/Buffers.glsl"
 #include "Shared/Grid.glsl"
 #include "Rays/BlockReach.glsl"
+#include "Rays/LevelStretches.glsl"
 #include "Rays/RayQueues.glsl"
 #include "Rays/Rays.glsl"
 #include "Rays/TraverseGrid.glsl"
 #include BLOCK_ACCESS
 
-shared uvec2 ahead[GROUP_BLOCKS_AHEAD]; // block, and its reach in the lowest three bits
+#ifdef LEVELS
+const uint MOST_AHEAD = 2u * GROUP_BLOCKS_AHEAD; // where levels blend, a block of each
+#else
+const uint MOST_AHEAD = GROUP_BLOCKS_AHEAD;
+#endif
+
+shared uvec2 ahead[MOST_AHEAD]; // block, and its reach in the lowest three bits
 shared uint aheadCount;
+
+void AddAhead(ivec3 block, ivec3 reach)
+{
+  ahead[atomicAdd(aheadCount, 1u)] =
+    uvec2(BlockIndex(block), reach.x + 2 * reach.y + 4 * reach.z);
+}
 
 void LookAhead(uint pixel, uint speculation)
 {
   Ray ray = CameraRay(pixel);
-  GridPlace place = PlaceIn(ray, BlockCoordinates(BlockOfRay(pixel)));
+  GridPlace place = ResumeRay(ray, BlockOfRay(pixel));
   GridCursor at = OutsideGrid();
-  for (uint i = 0u; i < speculation && FindActiveBlock(ray, i > 0u, place, at); ++i)
+  for (uint i = 0u; i < speculation && FindNextBlock(ray, i > 0u, place, at); ++i)
   {
     ivec3 reach = DualGridReach(ray, place, CrossBlock(ray, place));
-    ahead[atomicAdd(aheadCount, 1u)] =
-      uvec2(BlockIndex(place.Block), reach.x + 2 * reach.y + 4 * reach.z);
+    AddAhead(place.Block, reach);
+#ifdef LEVELS
+    if (ray.Blends)
+    {
+      ivec3 coarse = place.Block >> HalvedByNext();
+      ivec3 coarseReach = ReachInNextLevel(place.Block, reach);
+      ++level;
+      AddAhead(coarse, coarseReach);
+      --level;
+    }
+#endif
   }
 }
 
@@ -36,6 +58,7 @@ void RequestMissing()
     uvec2 met = ahead[i >> 3];
     if ((i & 7u & ~met.y) == 0u)
     {
+      EnterLevelOf(met.x);
       ivec3 block = BlockCoordinates(met.x) + SideOffset(int(i & 7u));
       if (SlotOf(block) == NONE)
       {

@@ -42,6 +42,7 @@ void StoreRequest(uint at, uint block)
     cacheRequests[at] = block;
     return;
   }
+  EnterLevelOf(block);
   ivec3 coordinates = BlockCoordinates(block);
   uint local = LocalIndex(coordinates);
   uint macrocell = MacrocellIndex(MacrocellOf(coordinates));

@@ -13,5 +13,20 @@ ivec3 DualGridReach(Ray ray, GridPlace place, BlockCrossing crossing)
   Wide3 lastCells = Difference(place.Exits, before);
   ivec3 reached = Choose(-AreReached(lastCells, crossing.Leave),
     1 + AreReached(lastCells, crossing.Enter), backwards);
-  return min(reached, volume.Blocks - 1 - place.Block);
+  return min(reached, GRID.Blocks - 1 - place.Block);
 }
+
+#ifdef LEVELS
+// The same for the block of the next level that holds this one: to the next blocks if its own last
+// cells are there. (On an axis that is halved, whether or not the ray meets them.)
+ivec3 ReachInNextLevel(ivec3 block, ivec3 reach)
+{
+  if (level + 1 >= volume.NumberOfLevels)
+  {
+    return ivec3(0);
+  }
+  ivec3 halved = HalvedByNext();
+  ivec3 coarse = Choose(reach, block & 1, -halved);
+  return min(coarse, volume.Levels[level + 1].Blocks - 1 - (block >> halved));
+}
+#endif

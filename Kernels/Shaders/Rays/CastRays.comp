@@ -7,6 +7,7 @@
 #include "Shared/Buffers.glsl"
 #include "Shared/Grid.glsl"
 #include "Shared/GroupAppend.glsl"
+#include "Rays/LevelStretches.glsl"
 #include "Rays/RayQueues.glsl"
 #include "Rays/Rays.glsl"
 #include "Rays/TraverseGrid.glsl"
@@ -21,16 +22,16 @@
 
 // Walks on from a place to the first hit. Returns true if the ray has to wait for the block that it
 // has come to.
-bool FindHit(Ray ray, inout GridPlace place, out Hit hit)
+bool FindHit(inout Ray ray, inout GridPlace place, out Hit hit)
 {
   hit = MISS;
   bool waits = false;
   bool leaves = false;
   GridCursor at = OutsideGrid();
-  while (!waits && hit.Key == NO_HIT && FindActiveBlock(ray, leaves, place, at))
+  while (!waits && hit.Key == NO_HIT && FindNextBlock(ray, leaves, place, at))
   {
     BlockVisit visit = PlanVisit(ray, place);
-    waits = LacksBlocks(place.Block, visit);
+    waits = LacksBlocks(ray, place.Block, visit);
     if (!waits)
     {
       VisitBlock(ray, place, visit, hit);
@@ -48,11 +49,14 @@ uint CastRay(uint pixel, bool isNew)
     return DONE;
   }
   atomicAdd(groupActiveRays, 1u);
-  GridPlace place =
-    PlaceIn(ray, isNew ? BlockOf(ray.FirstCell) : BlockCoordinates(BlockOfRay(pixel)));
+  GridPlace place;
   if (isNew)
   {
-    EnterGrid(ray, place);
+    place = BeginRay(ray);
+  }
+  else
+  {
+    place = ResumeRay(ray, BlockOfRay(pixel));
   }
   PassLastHit(pixel);
   Hit hit;

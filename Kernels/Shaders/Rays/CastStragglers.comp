@@ -4,6 +4,7 @@
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
 #include "Shared/Grid.glsl"
+#include "Rays/LevelStretches.glsl"
 #include "Rays/RayQueues.glsl"
 #include "Rays/Rays.glsl"
 #include "Rays/TraverseGrid.glsl"
@@ -55,7 +56,7 @@ bool CastRay(uint pixel)
 {
   uint lane = gl_LocalInvocationIndex;
   Ray ray = CameraRay(pixel);
-  GridPlace next = PlaceIn(ray, BlockCoordinates(BlockOfRay(pixel)));
+  GridPlace next = ResumeRay(ray, BlockOfRay(pixel));
   PassLastHit(pixel);
   GridCursor at = OutsideGrid();
   bool leaves = false;
@@ -65,7 +66,7 @@ bool CastRay(uint pixel)
     GridPlace place;
     bool took = TakeBlock(ray, leaves, next, at, inside, place);
     BlockVisit visit = PlanVisit(ray, place);
-    if (took && LacksBlocks(place.Block, visit))
+    if (took && LacksBlocks(ray, place.Block, visit))
     {
       atomicMin(firstMissing, lane);
     }
@@ -89,6 +90,11 @@ bool CastRay(uint pixel)
       return firstHit == GROUP_SIZE;
     }
     barrier(); // all have read the first lanes before any finds others
+    if (!inside)
+    {
+      inside = EnterNextStretch(ray, next, at);
+      leaves = false;
+    }
   }
   return false;
 }

@@ -39,6 +39,62 @@ uint MarksOf(uint macrocell, vec2 range, uint firstWord)
   return marks;
 }
 
+#ifdef LEVELS
+// Is the surface of the level, or of its blend with the next, possible in a block? Where either has
+// no visible cell there is none. Ranges are upside down then.
+bool MayBlend(vec2 range, vec2 coarse)
+{
+  return range.x <= range.y && coarse.x <= coarse.y &&
+    StraddlesAnyIsovalue(min(range.x, coarse.x), max(range.y, coarse.y));
+}
+
+vec2 RangeIn(uint macrocell, uint local)
+{
+  uint two = macrocells[macrocell].Ranges[local >> 1];
+  vec2 range = vec2(macrocells[macrocell].Low, macrocells[macrocell].High);
+  return BlockRange(range, two >> (16u * (local & 1u)));
+}
+
+// The active blocks where the next level blends in: a coarse block, of one macrocell for all that a
+// macrocell has, holds each of them.
+uvec2 BlendMarks(uint macrocell)
+{
+  uvec2 marks = uvec2(0u);
+  if (level + 1 >= volume.NumberOfLevels)
+  {
+    return marks;
+  }
+  ivec3 place = MacrocellCoordinates(macrocell);
+  ivec3 halved = HalvedByNext();
+  ++level;
+  uint coarse = MacrocellIndex(place >> halved);
+  --level;
+  if (!MayBlend(vec2(macrocells[macrocell].Low, macrocells[macrocell].High),
+        vec2(macrocells[coarse].Low, macrocells[coarse].High)))
+  {
+    return marks;
+  }
+  for (uint local = 0u; local < uint(BLOCKS_PER_MACROCELL); ++local)
+  {
+    ivec3 block = MACROCELL_SIDE * place + BlockInMacrocell(local) >> halved;
+    uint mark = MayBlend(RangeIn(macrocell, local), RangeIn(coarse, LocalIndex(block))) ? 1u : 0u;
+    marks |= local < 32u ? uvec2(mark << local, 0u) : uvec2(0u, mark << (local & 31u));
+  }
+  return marks;
+}
+#endif
+
+void StoreMarks(uint macrocell, uvec2 marks)
+{
+#ifdef LEVELS
+  EnterLevelOfMacrocell(macrocell);
+  blockMarks[2u * macrocell] = marks;
+  blockMarks[2u * macrocell + 1u] = BlendMarks(macrocell);
+#else
+  blockMarks[macrocell] = marks;
+#endif
+}
+
 void main()
 {
   uint first = GROUP_SIZE * FoldedGroup() + gl_LocalInvocationIndex;
@@ -52,6 +108,6 @@ void main()
       marks.x = MarksOf(macrocell, range, 0u);
       marks.y = MarksOf(macrocell, range, uint(BLOCKS_PER_MACROCELL) / 4u);
     }
-    blockMarks[macrocell] = marks;
+    StoreMarks(macrocell, marks);
   }
 }

@@ -24,6 +24,13 @@ struct Ray
   ivec3 FirstCell;  // at Enter, but for planes that it lies on
   ivec3 Step;       // +1 or -1
   Wide Enter, Leave; // parameters between which the ray is in the part that is drawn
+#ifdef LEVELS
+  // All but Enter are those of a level of detail, of which the ray has a stretch: see
+  // LevelStretches.glsl.
+  Wide From;   // parameter where the stretch begins; it ends at Leave
+  Wide End;    // where the ray leaves what is drawn
+  bool Blends; // with the next level
+#endif
 };
 
 const Wide WAY = WIDE(1 << (WAY_BITS - 32), 0u);

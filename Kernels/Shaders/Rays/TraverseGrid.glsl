@@ -11,7 +11,7 @@
 // The last block on each axis that holds cells: a block of a single sample holds none.
 ivec3 LastCellBlock()
 {
-  return (volume.Samples - 2) / BLOCK_SIDE;
+  return (GRID.Samples - 2) / BLOCK_SIDE;
 }
 
 // Planes through which a ray leaves an element of a grid whose elements have `side` cells.
@@ -61,10 +61,20 @@ struct BlockCrossing
   Wide Enter, Leave;
 };
 
+// Where the walk in the grid begins.
+Wide BeginOf(Ray ray)
+{
+#ifdef LEVELS
+  return ray.From;
+#else
+  return ray.Enter;
+#endif
+}
+
 BlockCrossing CrossBlock(Ray ray, GridPlace place)
 {
   Wide3 entries = Difference(place.Exits, BlockSpacing(ray));
-  return BlockCrossing(LargerOf(ray.Enter, LargestOf(entries)),
+  return BlockCrossing(LargerOf(BeginOf(ray), LargestOf(entries)),
     SmallerOf(ray.Leave, SmallestOf(place.Exits)));
 }
 
@@ -107,12 +117,24 @@ bool IsRegionDrawn(int region)
   return (view.DrawnRegions >> region & 1) != 0;
 }
 
+// Of a place in a cell of this level.
+int RegionOf(ivec3 cell, vec3 place)
+{
+#ifdef LEVELS
+  vec3 finest = place * vec3(ivec3(1) << Halvings()); // a power of 2: exact
+  vec3 whole = floor(finest);
+  return CroppingRegion((cell << Halvings()) + ivec3(whole), finest - whole);
+#else
+  return CroppingRegion(cell, place);
+#endif
+}
+
 // Tells whether one region that is not drawn holds the whole block.
 bool IsCroppedAway(ivec3 block)
 {
   ivec3 first = BLOCK_SIDE * block;
-  int region = CroppingRegion(first, vec3(0.0));
-  return region == CroppingRegion(first + BLOCK_SIDE, vec3(0.0)) && !IsRegionDrawn(region);
+  int region = RegionOf(first, vec3(0.0));
+  return region == RegionOf(first + BLOCK_SIDE, vec3(0.0)) && !IsRegionDrawn(region);
 }
 #endif
 
@@ -126,6 +148,15 @@ struct GridCursor
 GridCursor OutsideGrid()
 {
   return GridCursor(ivec3(-1), uvec2(0u));
+}
+
+uvec2 MarksOf(Ray ray, ivec3 macrocell)
+{
+#ifdef LEVELS
+  return blockMarks[2u * MacrocellIndex(macrocell) + (ray.Blends ? 1u : 0u)];
+#else
+  return blockMarks[MacrocellIndex(macrocell)];
+#endif
 }
 
 // Tells whether a block of the cursor's macrocell may hold a surface that is drawn.
@@ -142,7 +173,7 @@ bool IsBlockActive(GridCursor at, ivec3 block)
 }
 
 // Walks to the next active block. `leaves`: the one where the ray is does not count. False if the
-// ray leaves the volume before. Lanes that skip a macrocell and those that go to the next block
+// ray leaves the volume, or its stretch in a level of detail ends, before. Lanes that skip a macrocell and those that go to the next block
 // make the last step together.
 bool FindActiveBlock(Ray ray, bool leaves, inout GridPlace place, inout GridCursor at)
 {
@@ -152,7 +183,7 @@ bool FindActiveBlock(Ray ray, bool leaves, inout GridPlace place, inout GridCurs
     ivec3 macrocell = MacrocellOf(place.Block);
     if (macrocell != at.Macrocell)
     {
-      at = GridCursor(macrocell, blockMarks[MacrocellIndex(macrocell)]);
+      at = GridCursor(macrocell, MarksOf(ray, macrocell));
     }
     bool skips = at.Marks == uvec2(0u);
     if (!skips && !leaves && IsBlockActive(at, place.Block))
@@ -161,6 +192,9 @@ bool FindActiveBlock(Ray ray, bool leaves, inout GridPlace place, inout GridCurs
     }
     leaves = false;
     Wide t = SmallestOf(ExitsBehind(ray, place, skips ? MACROCELL_SIDE - 1 : 0));
+#ifdef LEVELS
+    t = SmallerOf(t, ray.Leave); // there the next stretch begins
+#endif
     if (skips)
     {
       CrossThreePlanes(ray, BlockSpacing(ray), t, place.Block, place.Exits);

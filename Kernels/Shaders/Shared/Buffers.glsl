@@ -20,7 +20,9 @@ BUFFER_STREAM StreamBuffer { uint stream[]; };
 BUFFER_MACROCELLS Macrocells { Macrocell macrocells[]; };
 #endif
 #ifdef BUFFER_BLOCK_MARKS
-BUFFER_BLOCK_MARKS BlockMarks { uvec2 blockMarks[]; }; // see MarkBlocks.comp
+// Of each macrocell; with levels of detail two: of a level alone, and with the next. See
+// MarkBlocks.comp.
+BUFFER_BLOCK_MARKS BlockMarks { uvec2 blockMarks[]; };
 #endif
 #ifdef BUFFER_HIDDEN_CELLS
 // Which cells are hidden, as runs of blocks that are alike: their number, the first block of each,

@@ -1,6 +1,68 @@
-// The grid of two levels: ZFP's blocks of samples, and macrocells of blocks.
+// The grid: ZFP's blocks of samples, and macrocells of blocks. Each level of detail has one; blocks
+// and macrocells are numbered through all, so that only who needs coordinates knows of levels.
 
 #include "Shared/Scene.glsl"
+
+#ifdef LEVELS
+int level = 0; // whose grid the functions below are about; the volume itself is level 0
+#define GRID volume.Levels[level]
+
+uint FirstBlock()
+{
+  return volume.Levels[level].FirstBlock;
+}
+
+uint FirstMacrocell()
+{
+  return volume.Levels[level].FirstMacrocell;
+}
+
+// Chooses the level of a block.
+void EnterLevelOf(uint block)
+{
+  level = 0;
+  while (level + 1 < volume.NumberOfLevels && block >= volume.Levels[level + 1].FirstBlock)
+  {
+    ++level;
+  }
+}
+
+void EnterLevelOfMacrocell(uint macrocell)
+{
+  level = 0;
+  while (level + 1 < volume.NumberOfLevels && macrocell >= volume.Levels[level + 1].FirstMacrocell)
+  {
+    ++level;
+  }
+}
+
+// How often the axes have every second sample of the volume itself.
+ivec3 Halvings()
+{
+  return volume.Levels[level].Halvings;
+}
+
+// On which axes does the next level have every second sample of this one? 1, else 0.
+ivec3 HalvedByNext()
+{
+  return volume.Levels[level + 1].Halvings - volume.Levels[level].Halvings;
+}
+#else
+#define GRID volume
+
+uint FirstBlock()
+{
+  return 0u;
+}
+
+uint FirstMacrocell()
+{
+  return 0u;
+}
+
+void EnterLevelOf(uint block) {}
+void EnterLevelOfMacrocell(uint macrocell) {}
+#endif
 
 // Block that holds a sample, or a cell whose lowest corner is this sample.
 ivec3 BlockOf(ivec3 voxel)
@@ -32,30 +94,32 @@ ivec3 CoordinatesIn(ivec3 grid, uint i)
   return ivec3(inSlice % uint(grid.x), inSlice / uint(grid.x), i / slice);
 }
 
+// Of a block, or macrocell, of this level.
 ivec3 BlockCoordinates(uint block)
 {
-  return CoordinatesIn(volume.Blocks, block);
+  return CoordinatesIn(GRID.Blocks, block - FirstBlock());
 }
 
 ivec3 MacrocellCoordinates(uint macrocell)
 {
-  return CoordinatesIn(volume.Macrocells, macrocell);
+  return CoordinatesIn(GRID.Macrocells, macrocell - FirstMacrocell());
 }
 
 uint BlockIndex(ivec3 b)
 {
-  return uint(b.x) + uint(volume.Blocks.x) * (uint(b.y) + uint(volume.Blocks.y) * uint(b.z));
+  return FirstBlock() + uint(b.x) +
+    uint(GRID.Blocks.x) * (uint(b.y) + uint(GRID.Blocks.y) * uint(b.z));
 }
 
 bool InGrid(ivec3 block)
 {
-  return all(lessThan(uvec3(block), uvec3(volume.Blocks)));
+  return all(lessThan(uvec3(block), uvec3(GRID.Blocks)));
 }
 
 uint MacrocellIndex(ivec3 c)
 {
-  return uint(c.x) +
-    uint(volume.Macrocells.x) * (uint(c.y) + uint(volume.Macrocells.y) * uint(c.z));
+  return FirstMacrocell() + uint(c.x) +
+    uint(GRID.Macrocells.x) * (uint(c.y) + uint(GRID.Macrocells.y) * uint(c.z));
 }
 
 // Number of a block within its macrocell.

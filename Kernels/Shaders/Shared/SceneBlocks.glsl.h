@@ -169,7 +169,7 @@ UNIFORM_BLOCK(Volume, VOLUME_BINDING)
   ivec3 Blocks;
   uint NumberOfMacrocells; // likewise
   ivec3 Macrocells;
-  int Padding0;
+  int NumberOfLevels;
   VolumeLevel Levels[MAX_LEVELS]; // the volume itself first
 }
 INSTANCE(volume);

@@ -17,6 +17,7 @@ uint SlotFor(uint i, uint block)
   {
     return i;
   }
+  EnterLevelOf(block);
   ivec3 coordinates = BlockCoordinates(block);
   uint macrocell = MacrocellIndex(MacrocellOf(coordinates));
   uint local = LocalIndex(coordinates);

@@ -12,6 +12,7 @@
 // NONE if the request was denied.
 uint SlotFor(uint i, uint block)
 {
+  EnterLevelOf(block);
   return SlotOf(BlockCoordinates(block));
 }
 

@@ -9,6 +9,7 @@
 #include "Shared/Grid.glsl"
 #include "Shared/GroupAppend.glsl"
 #include "Cache/UseBlocks.glsl"
+#include "Rays/LevelSpans.glsl"
 #include "Rays/RayQueues.glsl"
 #include "Rays/Rays.glsl"
 #include "Surface/Hits.glsl"
@@ -26,10 +27,17 @@
 #define CONTINUES 2u // its ray does, behind it
 
 #if defined(LIT) || defined(COLORED)
-// Finds the normal, and the colour's value. Returns true if they have to wait for blocks.
-bool FindNormal(uint pixel, out vec3 normal)
+// What the surface is like at a hit.
+struct Surface
 {
-  SurfacePoint hit = PointOf(LineOf(pixel), HitKeyOf(pixel));
+  vec3 Gradient;
+  float ColorValue;
+};
+
+// Of this level. Returns true if it has to wait for blocks.
+bool SampleSurface(RayLine line, uint key, out Surface surface)
+{
+  SurfacePoint hit = PointOf(line, key);
   ivec3 first = BlockOf(FirstStencilSample(hit.Cell));
   ivec3 reach = BlockOf(LastStencilSample(hit.Cell)) - first;
   FindSlots(first, reach);
@@ -43,10 +51,65 @@ bool FindNormal(uint pixel, out vec3 normal)
   }
   UseBlocks(first, reach);
 #ifdef COLORED
-  StoreColorValue(pixel, ColorValue(hit));
+  surface.ColorValue = ColorValue(hit);
 #endif
 #ifdef LIT
-  normal = ViewNormal(Gradient(hit), -normalize(EyeRayDirection(pixel)));
+  surface.Gradient = Gradient(hit);
+#endif
+  return false;
+}
+
+#ifdef LEVELS
+#ifdef COLORED
+// The first where one has no value: infinity stands for it.
+float BlendColors(float a, float b, float weight)
+{
+  return isinf(a) || isinf(b) ? a : mix(a, b, weight);
+}
+#endif
+
+// Of the level of the hit's depth, or the two that blend there.
+bool SampleLevels(RayLine line, uint key, out Surface surface)
+{
+  bool waits = false;
+  float weight = EnterLevelAt(HitT(key));
+  int first = level;
+  int last = level + (weight > 0.0 ? 1 : 0);
+  for (; level <= last; ++level)
+  {
+    Surface other;
+    waits = SampleSurface(line, key, other) || waits;
+#ifdef LIT
+    surface.Gradient =
+      level == first ? other.Gradient : mix(surface.Gradient, other.Gradient, weight);
+#endif
+#ifdef COLORED
+    surface.ColorValue = level == first ? other.ColorValue
+                                        : BlendColors(surface.ColorValue, other.ColorValue, weight);
+#endif
+  }
+  return waits;
+}
+#endif
+
+// Finds the normal, and the colour's value. Returns true if they have to wait for blocks.
+bool FindNormal(uint pixel, out vec3 normal)
+{
+  Surface surface;
+#ifdef LEVELS
+  bool waits = SampleLevels(LineOf(pixel), HitKeyOf(pixel), surface);
+#else
+  bool waits = SampleSurface(LineOf(pixel), HitKeyOf(pixel), surface);
+#endif
+  if (waits)
+  {
+    return true;
+  }
+#ifdef COLORED
+  StoreColorValue(pixel, surface.ColorValue);
+#endif
+#ifdef LIT
+  normal = ViewNormal(surface.Gradient, -normalize(EyeRayDirection(pixel)));
 #endif
   return false;
 }

@@ -5,6 +5,7 @@
 #include "Cache/SlotLayout.glsl"
 #include "Rays/Rays.glsl"
 #include "Rays/TraverseGrid.glsl"
+#include "Rays/LevelStretches.glsl"
 #include "Store/HiddenCells.glsl"
 #include "Surface/Excess.glsl"
 #include "Surface/Hits.glsl"
@@ -65,6 +66,65 @@ uvec2 KnownCells(ivec3 block)
 #endif
 }
 
+#ifdef LEVELS
+// What the next level has around a cell, where it blends in: samples and hidden cells of the coarse
+// cell that holds it, whose slots are aside.
+struct CoarseCells
+{
+  ivec3 Halved;
+  uvec2 Hidden;
+};
+
+CoarseCells FindCoarseCells(ivec3 block)
+{
+  CoarseCells coarse = CoarseCells(HalvedByNext(), uvec2(0u));
+#ifdef HAS_HIDDEN_CELLS
+  ExchangeSlots();
+  coarse.Hidden = HiddenInSlot(FoundSlot(block >> coarse.Halved, block >> coarse.Halved));
+  ExchangeSlots();
+#endif
+  return coarse;
+}
+
+Corners LoadCoarseCorners(CoarseCells coarse, ivec3 cell)
+{
+  ExchangeSlots();
+  Corners values = LoadCorners(cell >> coarse.Halved);
+  ExchangeSlots();
+  return values;
+}
+
+bool AreOnBothSides(Corners w, Corners v)
+{
+  return StraddlesZero(w) || StraddlesZero(v) || Inside(w.Low.x) != Inside(v.Low.x);
+}
+
+// Does a surface of the blend cross the cell?
+bool BlendHoldsSurface(Corners w, Corners v)
+{
+#ifdef SEVERAL_ISOVALUES
+  for (int i = 0; i < view.NumberOfIsovalues; ++i)
+  {
+    if (AreOnBothSides(Excess(w, i), Excess(v, i)))
+    {
+      return true;
+    }
+  }
+  return false;
+#else
+  return AreOnBothSides(w, v);
+#endif
+}
+
+bool BlendMayHit(uvec2 known, CoarseCells coarse, ivec3 cell, inout Corners w, inout Corners v)
+{
+  w = LoadCorners(cell);
+  v = LoadCoarseCorners(coarse, cell);
+  return BlendHoldsSurface(w, v) && !HoldsCell(known, cell) &&
+    !HoldsCell(coarse.Hidden, cell >> coarse.Halved);
+}
+#endif
+
 // May a ray hit a surface in the cell? Samples that are loaded to find out are kept in `w`.
 bool MayHit(uvec2 known, ivec3 cell, inout Corners w)
 {
@@ -100,6 +160,11 @@ struct CellPath
   ivec3 Cell;
   Wide T0, T1;
   vec3 U0, U1;
+#ifdef LEVELS
+  bool Blends; // with the next level: places in its coarse cell, and its weights at both ends
+  vec3 V0, V1;
+  float Weight0, Weight1;
+#endif
 };
 
 // The place in a cell at parameter t, in the direction of the ray: from the planes through which it
@@ -119,8 +184,35 @@ CellPath PathThrough(Ray ray, CellPlace at, Wide t0, Wide t1)
   vec3 u0 = mix(PlaceAlong(ray, entries, t0), vec3(0.0), AreEqual(entries, t0));
   vec3 u1 = mix(PlaceAlong(ray, entries, t1), vec3(1.0), AreEqual(at.Exits, t1));
   bvec3 backwards = lessThan(ray.Step, ivec3(0));
-  return CellPath(at.Cell, t0, t1, mix(u0, 1.0 - u0, backwards), mix(u1, 1.0 - u1, backwards));
+  CellPath path;
+  path.Cell = at.Cell;
+  path.T0 = t0;
+  path.T1 = t1;
+  path.U0 = mix(u0, 1.0 - u0, backwards);
+  path.U1 = mix(u1, 1.0 - u1, backwards);
+#ifdef LEVELS
+  path.Blends = false;
+#endif
+  return path;
 }
+
+#ifdef LEVELS
+// The same in both levels where they blend. `coarse`: the ray in the next.
+CellPath BlendedPath(Ray ray, Ray coarse, CellPlace at, Wide t0, Wide t1)
+{
+  CellPlace next;
+  next.Cell = at.Cell >> HalvedByNext();
+  next.Exits = PlanesT(coarse, ExitPlanes(coarse, next.Cell, 1));
+  CellPath other = PathThrough(coarse, next, t0, t1);
+  CellPath path = PathThrough(ray, at, t0, t1);
+  path.Blends = true;
+  path.V0 = other.U0;
+  path.V1 = other.U1;
+  path.Weight0 = WeightAt(t0);
+  path.Weight1 = WeightAt(t1);
+  return path;
+}
+#endif
 
 Wide HitBetween(CellPath path, float s)
 {
@@ -155,7 +247,7 @@ Hit Crossing(CellPath path, float s, int isovalue)
   counts = counts && (lastHit.Key == NO_HIT || Before(lastHit, hit));
 #endif
 #ifdef CROPPED
-  counts = counts && IsRegionDrawn(CroppingRegion(path.Cell, mix(path.U0, path.U1, s)));
+  counts = counts && IsRegionDrawn(RegionOf(path.Cell, mix(path.U0, path.U1, s)));
 #endif
   return counts ? hit : MISS;
 }
@@ -175,18 +267,37 @@ Hit FirstHit(CellPath path, vec4 cubic, int isovalue)
 #endif
 }
 
-// First hit on the path; false if there is none.
-bool IntersectCell(CellPath path, Corners w, out Hit hit)
+// The interpolant along the path, from the corners' excess over an isovalue. Where two levels blend
+// the coefficients do: exactly those of one level where the other has no weight.
+vec4 ProfileOf(CellPath path, Corners w, Corners v)
+{
+  vec4 cubic = CubicAlong(w, path.U0, path.U1);
+#ifdef LEVELS
+  if (path.Blends)
+  {
+    vec4 coarse = CubicAlong(v, path.V0, path.V1);
+    const vec4 thirds = vec4(0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0);
+    precise vec4 weight = path.Weight0 * (1.0 - thirds) + path.Weight1 * thirds;
+    precise vec4 blend = cubic * (1.0 - weight) + coarse * weight;
+    return blend;
+  }
+#endif
+  return cubic;
+}
+
+// First hit on the path; false if there is none. `v`: samples of the next level, where it blends
+// in.
+bool IntersectCell(CellPath path, Corners w, Corners v, out Hit hit)
 {
 #ifdef SEVERAL_ISOVALUES
   hit = MISS;
   for (int i = 0; i < view.NumberOfIsovalues; ++i)
   {
-    Hit other = FirstHit(path, CubicAlong(Excess(w, i), path.U0, path.U1), i);
+    Hit other = FirstHit(path, ProfileOf(path, Excess(w, i), Excess(v, i)), i);
     hit = Before(other, hit) ? other : hit;
   }
 #else
-  hit = FirstHit(path, CubicAlong(w, path.U0, path.U1), 0);
+  hit = FirstHit(path, ProfileOf(path, w, v), 0);
 #endif
   return hit.Key != NO_HIT;
 }
@@ -219,9 +330,19 @@ bool IntersectBlock(Ray ray, GridPlace place, BlockCrossing crossing, out Hit hi
   Wide end = crossing.Leave;
   CellPlace at = CellAt(ray, place, t0);
   uvec2 known = KnownCells(place.Block);
+#ifdef LEVELS
+  Ray coarseRay = ray;
+  CoarseCells coarse = CoarseCells(ivec3(0), uvec2(0u));
+  if (ray.Blends)
+  {
+    coarseRay = RayInNext(ray);
+    coarse = FindCoarseCells(place.Block);
+  }
+#endif
   for (int tested = 0; tested < 16; ++tested) // a ray crosses at most 10 cells of 4^3
   {
     Corners w = Corners(vec4(0.0), vec4(0.0));
+    Corners v = w;
     Wide t1;
     bool last;
     bool crossed = false;
@@ -229,7 +350,11 @@ bool IntersectBlock(Ray ray, GridPlace place, BlockCrossing crossing, out Hit hi
     {
       t1 = SmallestOf(at.Exits);
       last = !IsLess(t1, end);
+#ifdef LEVELS
+      crossed = ray.Blends ? BlendMayHit(known, coarse, at.Cell, w, v) : MayHit(known, at.Cell, w);
+#else
       crossed = MayHit(known, at.Cell, w);
+#endif
       if (crossed || last)
       {
         break;
@@ -238,9 +363,19 @@ bool IntersectBlock(Ray ray, GridPlace place, BlockCrossing crossing, out Hit hi
       t0 = t1;
     }
     t1 = SmallerOf(t1, end);
-    if (crossed && IntersectCell(PathThrough(ray, at, t0, t1), CornersOf(at.Cell, w), hit))
+    if (crossed)
     {
-      return true;
+      CellPath path = PathThrough(ray, at, t0, t1);
+#ifdef LEVELS
+      if (ray.Blends)
+      {
+        path = BlendedPath(ray, coarseRay, at, t0, t1);
+      }
+#endif
+      if (IntersectCell(path, CornersOf(at.Cell, w), v, hit))
+      {
+        return true;
+      }
     }
     if (!crossed || last)
     {

@@ -15,13 +15,20 @@ struct SurfacePoint
   vec3 Local; // coordinates in its unit cube
 };
 
-// From the key alone, so that it is the same in whichever pass the normal is found.
+// In this level, from the key alone, so that it is the same in whichever pass the normal is found.
 SurfacePoint PointOf(RayLine line, uint key)
 {
   Wide3 place = PlaceAt(line, HitT(key));
   SurfacePoint hit;
+#ifdef LEVELS
+  ivec3 side = ivec3(1) << Halvings(); // of a cell
+  hit.Cell = clamp(HighOf(place) >> Halvings(), ivec3(0), GRID.Samples - 2);
+  vec3 sinceCorner = vec3(HighOf(place) - hit.Cell * side) + vec3(LowOf(place)) * (1.0 / TWO_TO_32);
+  hit.Local = clamp(sinceCorner / vec3(side), 0.0, 1.0);
+#else
   hit.Cell = clamp(HighOf(place), ivec3(0), volume.Samples - 2);
   hit.Local = PlaceInCell(place, hit.Cell);
+#endif
   return hit;
 }
 
@@ -34,7 +41,7 @@ ivec3 FirstStencilSample(ivec3 cell)
 
 ivec3 LastStencilSample(ivec3 cell)
 {
-  return min(cell + 2, volume.Samples - 1);
+  return min(cell + 2, GRID.Samples - 1);
 }
 
 Stencil StencilOf(ivec3 cell)
@@ -94,7 +101,7 @@ uint HiddenAround(ivec3 cell)
   uint around = 0u;
   for (int i = 0; i < 27; ++i)
   {
-    ivec3 other = clamp(cell + ivec3(i % 3, i / 3 % 3, i / 9) - 1, ivec3(0), volume.Samples - 2);
+    ivec3 other = clamp(cell + ivec3(i % 3, i / 3 % 3, i / 9) - 1, ivec3(0), GRID.Samples - 2);
     around |= HoldsCell(HiddenInSlot(FoundSlot(first, BlockOf(other))), other) ? 1u << i : 0u;
   }
   return around;
@@ -156,7 +163,7 @@ vec3 Gradient(SurfacePoint hit)
   behindZ = Beyond(behindZ, high, low, around, CELLS_Z, ivec4(18, 19, 21, 22));
 #endif
   vec3 near = mix(vec3(1.0), vec3(2.0), equal(hit.Cell, ivec3(0)));
-  vec3 far = mix(vec3(1.0), vec3(2.0), equal(hit.Cell + 2, volume.Samples));
+  vec3 far = mix(vec3(1.0), vec3(2.0), equal(hit.Cell + 2, GRID.Samples));
   vec3 u = hit.Local;
   vec4 onX = DifferencesAt(u.x, beforeX, leftX, rightX, behindX, near.x, far.x);
   vec4 onY = DifferencesAt(u.y, beforeY, leftY, rightY, behindY, near.y, far.y);
@@ -164,7 +171,11 @@ vec3 Gradient(SurfacePoint hit)
   vec2 xz = mix(onX.xz, onX.yw, u.y);
   vec2 yz = mix(onY.xz, onY.yw, u.x);
   vec2 zy = mix(onZ.xz, onZ.yw, u.x);
-  return vec3(mix(xz.x, xz.y, u.z), mix(yz.x, yz.y, u.z), mix(zy.x, zy.y, u.y));
+  vec3 gradient = vec3(mix(xz.x, xz.y, u.z), mix(yz.x, yz.y, u.z), mix(zy.x, zy.y, u.y));
+#ifdef LEVELS
+  gradient /= vec3(ivec3(1) << Halvings());
+#endif
+  return gradient;
 }
 
 // Scales first, so that neither tiny nor huge gradients under- or overflow. Towards the viewer if
