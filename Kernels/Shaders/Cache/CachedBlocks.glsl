@@ -62,7 +62,7 @@ struct PlaceInMap
 
 PlaceInMap PlaceOf(ivec3 block)
 {
-  uvec3 strides = uvec3(1, GRID.Macrocells.x, GRID.Macrocells.x * GRID.Macrocells.y);
+  uvec3 strides = uvec3(1, LEVEL_GRID.Macrocells.x, LEVEL_GRID.Macrocells.x * LEVEL_GRID.Macrocells.y);
   const uvec3 localStrides = uvec3(1, MACROCELL_SIDE, MACROCELL_SIDE * MACROCELL_SIDE);
   return PlaceInMap(uvec3(MacrocellOf(block)) * strides + uvec3(FirstMacrocell(), 0, 0),
     (uvec3(block) & uint(MACROCELL_SIDE - 1)) * localStrides);

@@ -13,7 +13,7 @@ ivec3 DualGridReach(Ray ray, GridPlace place, BlockCrossing crossing)
   Wide3 lastCells = Difference(place.Exits, before);
   ivec3 reached = Choose(-AreReached(lastCells, crossing.Leave),
     1 + AreReached(lastCells, crossing.Enter), backwards);
-  return min(reached, GRID.Blocks - 1 - place.Block);
+  return min(reached, LEVEL_GRID.Blocks - 1 - place.Block);
 }
 
 #ifdef LEVELS

@@ -11,7 +11,7 @@
 // The last block on each axis that holds cells: a block of a single sample holds none.
 ivec3 LastCellBlock()
 {
-  return (GRID.Samples - 2) / BLOCK_SIDE;
+  return (LEVEL_GRID.Samples - 2) / BLOCK_SIDE;
 }
 
 // Planes through which a ray leaves an element of a grid whose elements have `side` cells.

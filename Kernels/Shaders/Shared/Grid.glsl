@@ -5,7 +5,7 @@
 
 #ifdef LEVELS
 int level = 0; // whose grid the functions below are about; the volume itself is level 0
-#define GRID volume.Levels[level]
+#define LEVEL_GRID volume.Levels[level]
 
 uint FirstBlock()
 {
@@ -48,7 +48,7 @@ ivec3 HalvedByNext()
   return volume.Levels[level + 1].Halvings - volume.Levels[level].Halvings;
 }
 #else
-#define GRID volume
+#define LEVEL_GRID volume
 
 uint FirstBlock()
 {
@@ -97,29 +97,29 @@ ivec3 CoordinatesIn(ivec3 grid, uint i)
 // Of a block, or macrocell, of this level.
 ivec3 BlockCoordinates(uint block)
 {
-  return CoordinatesIn(GRID.Blocks, block - FirstBlock());
+  return CoordinatesIn(LEVEL_GRID.Blocks, block - FirstBlock());
 }
 
 ivec3 MacrocellCoordinates(uint macrocell)
 {
-  return CoordinatesIn(GRID.Macrocells, macrocell - FirstMacrocell());
+  return CoordinatesIn(LEVEL_GRID.Macrocells, macrocell - FirstMacrocell());
 }
 
 uint BlockIndex(ivec3 b)
 {
   return FirstBlock() + uint(b.x) +
-    uint(GRID.Blocks.x) * (uint(b.y) + uint(GRID.Blocks.y) * uint(b.z));
+    uint(LEVEL_GRID.Blocks.x) * (uint(b.y) + uint(LEVEL_GRID.Blocks.y) * uint(b.z));
 }
 
 bool InGrid(ivec3 block)
 {
-  return all(lessThan(uvec3(block), uvec3(GRID.Blocks)));
+  return all(lessThan(uvec3(block), uvec3(LEVEL_GRID.Blocks)));
 }
 
 uint MacrocellIndex(ivec3 c)
 {
   return FirstMacrocell() + uint(c.x) +
-    uint(GRID.Macrocells.x) * (uint(c.y) + uint(GRID.Macrocells.y) * uint(c.z));
+    uint(LEVEL_GRID.Macrocells.x) * (uint(c.y) + uint(LEVEL_GRID.Macrocells.y) * uint(c.z));
 }
 
 // Number of a block within its macrocell.

@@ -22,7 +22,7 @@ SurfacePoint PointOf(RayLine line, uint key)
   SurfacePoint hit;
 #ifdef LEVELS
   ivec3 side = ivec3(1) << Halvings(); // of a cell
-  hit.Cell = clamp(HighOf(place) >> Halvings(), ivec3(0), GRID.Samples - 2);
+  hit.Cell = clamp(HighOf(place) >> Halvings(), ivec3(0), LEVEL_GRID.Samples - 2);
   vec3 sinceCorner = vec3(HighOf(place) - hit.Cell * side) + vec3(LowOf(place)) * (1.0 / TWO_TO_32);
   hit.Local = clamp(sinceCorner / vec3(side), 0.0, 1.0);
 #else
@@ -41,7 +41,7 @@ ivec3 FirstStencilSample(ivec3 cell)
 
 ivec3 LastStencilSample(ivec3 cell)
 {
-  return min(cell + 2, GRID.Samples - 1);
+  return min(cell + 2, LEVEL_GRID.Samples - 1);
 }
 
 Stencil StencilOf(ivec3 cell)
@@ -101,7 +101,7 @@ uint HiddenAround(ivec3 cell)
   uint around = 0u;
   for (int i = 0; i < 27; ++i)
   {
-    ivec3 other = clamp(cell + ivec3(i % 3, i / 3 % 3, i / 9) - 1, ivec3(0), GRID.Samples - 2);
+    ivec3 other = clamp(cell + ivec3(i % 3, i / 3 % 3, i / 9) - 1, ivec3(0), LEVEL_GRID.Samples - 2);
     around |= HoldsCell(HiddenInSlot(FoundSlot(first, BlockOf(other))), other) ? 1u << i : 0u;
   }
   return around;
@@ -163,7 +163,7 @@ vec3 Gradient(SurfacePoint hit)
   behindZ = Beyond(behindZ, high, low, around, CELLS_Z, ivec4(18, 19, 21, 22));
 #endif
   vec3 near = mix(vec3(1.0), vec3(2.0), equal(hit.Cell, ivec3(0)));
-  vec3 far = mix(vec3(1.0), vec3(2.0), equal(hit.Cell + 2, GRID.Samples));
+  vec3 far = mix(vec3(1.0), vec3(2.0), equal(hit.Cell + 2, LEVEL_GRID.Samples));
   vec3 u = hit.Local;
   vec4 onX = DifferencesAt(u.x, beforeX, leftX, rightX, behindX, near.x, far.x);
   vec4 onY = DifferencesAt(u.y, beforeY, leftY, rightY, behindY, near.y, far.y);
