@@ -15,13 +15,14 @@ certain.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 if TYPE_CHECKING:
+    from typing_extensions import Self
     from vtkmodules.vtkCommonDataModel import vtkImageData
     from vtkmodules.vtkRenderingCore import vtkCamera
 
@@ -101,6 +102,11 @@ class Volume:
             values, image.GetOrigin(), image.GetSpacing(), matrix, start, user, shift
         )
 
+    @property
+    def spacing(self) -> float:
+        """Return the largest of the axes' spacings, in world units."""
+        return float(np.linalg.norm(self.index_to_world[:3, :3], axis=0).max())
+
 
 @dataclass(frozen=True)
 class Camera:
@@ -177,6 +183,15 @@ class Cast:
     voxels: np.ndarray
     spacing: float = 0.0
 
+    def reshape(self, shape: tuple[int, ...]) -> Self:
+        """Return the same with arrays of another shape."""
+        arrays: dict[str, Any] = {
+            name: value.reshape(shape)
+            for name, value in vars(self).items()
+            if isinstance(value, np.ndarray)
+        }
+        return replace(self, **arrays)
+
 
 def cast(
     volume: Volume,
@@ -212,11 +227,7 @@ def cast(
     across = directions @ camera.forward
     begin, end = clip[0] / across, clip[1] / across
     result = cast_rays(volume, isovalue, origins, directions, slack=slack, begin=begin, end=end)
-    shape = (size[1], size[0]) if pixels is None else (-1,)
-    depth, early, late, voxels = (
-        getattr(result, name).reshape(shape) for name in ("depth", "early", "late", "voxels")
-    )
-    return Cast(depth, early, late, voxels, result.spacing)
+    return result.reshape((size[1], size[0]) if pixels is None else (-1,))
 
 
 def cast_rays(
@@ -233,19 +244,16 @@ def cast_rays(
 
     Directions have unit length.
     """
-    grid = _Grid(volume, float(isovalue), slack)
-    to_index = np.linalg.inv(volume.index_to_world[:3, :3])
-    starts = (np.asarray(origins, float) - volume.index_to_world[:3, 3]) @ to_index.T
-    steps = np.asarray(directions, float) @ to_index.T
-    begin, end = np.broadcast_to(begin, len(starts)), np.broadcast_to(end, len(starts))
-    hits = np.full((3, len(starts)), np.inf)
-    for first in range(0, len(starts), CHUNK):
-        part = slice(first, first + CHUNK)
-        hits[:, part] = _cast_chunk(
-            grid, starts[part].T, steps[part].T, begin[part], end[part], slack
-        )
-    spacing = float(np.linalg.norm(volume.index_to_world[:3, :3], axis=0).max())
-    return Cast(hits[1], hits[0], hits[2], np.linalg.norm(steps, axis=1), spacing)
+    grid = Grid(volume, float(isovalue), slack)
+    start, step = index_rays(volume, origins, directions)
+
+    def walk(rays: np.ndarray, enter: np.ndarray, leave: np.ndarray) -> np.ndarray:
+        walk = Walk(grid, start[:, rays], step[:, rays], enter, leave)
+        walk.run()
+        return walk.progress.result()
+
+    hits = cast_at_box(grid.size, start, step, begin, end, slack, walk)
+    return Cast(hits[1], hits[0], hits[2], np.linalg.norm(step, axis=0), volume.spacing)
 
 
 @dataclass(frozen=True)
@@ -288,9 +296,7 @@ def cast_all(
     """
     origins, directions = camera.rays(size)
     across = directions @ camera.forward
-    to_index = np.linalg.inv(volume.index_to_world[:3, :3])
-    start = ((origins - volume.index_to_world[:3, 3]) @ to_index.T).T
-    step = (directions @ to_index.T).T
+    start, step = index_rays(volume, origins, directions)
     enter, leave = clip_to_box(
         start,
         step,
@@ -302,7 +308,7 @@ def cast_all(
     rays = np.flatnonzero(enter <= leave)
     parts = []
     for number, isovalue in enumerate(isovalues):
-        grid = _Grid(volume, float(isovalue), Slack())
+        grid = Grid(volume, float(isovalue), Slack())
         found = _FullWalk(grid, start[:, rays], step[:, rays], enter[rays], leave[rays]).crossings()
         parts.append((rays[found[0]], found[1], np.full(len(found[0]), number)))
     ray, depth, surface = (np.concatenate(part) for part in zip(*parts))
@@ -317,7 +323,7 @@ def _unit(vector: np.ndarray) -> np.ndarray:
 # --- the grid -------------------------------------------------------------------------------------
 
 
-class _Grid:
+class Grid:
     """Holds the samples and which cells matter to a ray that started inside or outside.
 
     What else a ray has to know of a cell is made when it gets there, so that a volume takes little
@@ -387,6 +393,17 @@ class _Grid:
         }
         return polynomials, self._error(excess.min(axis=0), excess.max(axis=0))
 
+    def cubics(
+        self, corner: np.ndarray, first: np.ndarray, last: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Make the cubics between two places in cells, given by their corners; see `_along`.
+
+        All are columns, in index space. Their errors come with them.
+        """
+        a, b = np.clip(first - corner, 0, 1), np.clip(last - corner, 0, 1)
+        cells, error = self.cells(self.strides @ corner)
+        return _along(cells, a, b - a), error
+
 
 _CORNERS = [f"{i:03b}" for i in range(8)]
 
@@ -441,17 +458,37 @@ def clip_to_box(
     return near, far
 
 
-def _cast_chunk(
-    grid: _Grid,
+def index_rays(
+    volume: Volume, origins: np.ndarray, directions: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Take rays to index space; origins and directions are columns there."""
+    to_index = np.linalg.inv(volume.index_to_world[:3, :3])
+    start = (np.asarray(origins, float) - volume.index_to_world[:3, 3]) @ to_index.T
+    return start.T, (np.asarray(directions, float) @ to_index.T).T
+
+
+def cast_at_box(
+    size: np.ndarray,
     start: np.ndarray,
     step: np.ndarray,
-    begin: np.ndarray,
-    end: np.ndarray,
+    begin: np.ndarray | float,
+    end: np.ndarray | float,
     slack: Slack,
+    walk: Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray],
 ) -> np.ndarray:
-    """Return `early`, `depth` and `late` of rays given in index space."""
-    last = (grid.size - 1).astype(float)
-    hits = np.full((3, start.shape[1]), np.inf)
+    """Cast rays given in index space at a volume of `size` samples.
+
+    `walk` takes the numbers of some rays that meet the volume, and where they enter and leave it.
+
+    Returns
+    -------
+    array [3, n]
+        `early`, `depth` and `late`, as `walk` returns them of its rays.
+    """
+    count = start.shape[1]
+    begin, end = np.broadcast_to(begin, count), np.broadcast_to(end, count)
+    last = (size - 1).astype(float)
+    hits = np.full((3, count), np.inf)
     enter, leave = clip_to_box(start, step, begin, end, np.zeros(3), last)
     if slack.position:
         # A ray that just touches or just misses the box may have either result in another caster.
@@ -463,20 +500,77 @@ def _cast_chunk(
         )
         edge = (touch <= off) & (core > out)
         hits[0, edge] = touch[edge]
-    rays = np.flatnonzero(enter <= leave)
-    if len(rays):
-        found = _Walk(grid, start[:, rays], step[:, rays], enter[rays], leave[rays]).run()
+    meeting = np.flatnonzero(enter <= leave)
+    for chunk in range(0, len(meeting), CHUNK):
+        rays = meeting[chunk : chunk + CHUNK]
+        found = walk(rays, enter[rays], leave[rays])
         hits[:, rays] = np.stack([np.minimum(hits[0, rays], found[0]), found[1], found[2]])
     if slack.position:
         hits[2, edge] = np.inf
     return hits
 
 
-class _Walk:
-    """Walks all rays of a chunk from cell to cell, to their last crossing or out of the volume."""
+@dataclass
+class Progress:
+    """What is known of rays on their way.
+
+    Attributes
+    ----------
+    hits
+        array [3, n] of `early`, `depth` and `late` so far.
+    side
+        +1 of rays that began inside, -1 of those outside, 0 while that is not known.
+    unsure
+        marks rays on whose side rounding decides: they may cross anywhere or nowhere.
+    """
+
+    hits: np.ndarray
+    side: np.ndarray
+    unsure: np.ndarray
+
+    @classmethod
+    def none(cls, count: int) -> Progress:
+        """Begin with so many rays."""
+        return cls(np.full((3, count), np.inf), np.zeros(count), np.zeros(count, bool))
+
+    def of(self, rays: np.ndarray) -> Progress:
+        """Copy what is known of some rays."""
+        return Progress(self.hits[:, rays], self.side[rays], self.unsure[rays])
+
+    def update(self, rays: np.ndarray, progress: Progress) -> None:
+        """Set what is known of some rays."""
+        self.hits[:, rays] = progress.hits
+        self.side[rays], self.unsure[rays] = progress.side, progress.unsure
+
+    def result(self) -> np.ndarray:
+        """Return the hits of rays that have come to their end."""
+        hits = self.hits.copy()
+        hits[2, self.unsure] = np.inf
+        return hits
+
+
+class Walk:
+    """Walks rays from cell to cell, to their last crossing or to where they leave.
+
+    Parameters
+    ----------
+    grid : Grid
+    start, step : array [3, n]
+        The rays' origins and directions, in the grid's index space.
+    enter, leave : array [n]
+        Distances between which the rays go, within the volume.
+    progress : Progress, optional
+        Of rays that have come some way before; it is carried on.
+    """
 
     def __init__(
-        self, grid: _Grid, start: np.ndarray, step: np.ndarray, enter: np.ndarray, leave: np.ndarray
+        self,
+        grid: Grid,
+        start: np.ndarray,
+        step: np.ndarray,
+        enter: np.ndarray,
+        leave: np.ndarray,
+        progress: Progress | None = None,
     ) -> None:
         self.grid = grid
         self.enter = enter
@@ -484,7 +578,8 @@ class _Walk:
         self.start = start + enter * step
         self.step = step
         self.leave = leave - enter
-        self.hits = np.full((3, len(enter)), np.inf)
+        self.progress = progress = progress or Progress.none(len(enter))
+        self.hits, self.side, self.unsure = progress.hits, progress.side, progress.unsure
         cells = np.clip(np.floor(self.start), 0, (grid.size - 2)[:, None]).astype(np.int64)
         self.index = grid.strides @ cells
         self.near = np.zeros(len(enter))
@@ -495,9 +590,6 @@ class _Walk:
         with np.errstate(divide="ignore", invalid="ignore"):
             self.inverse = 1.0 / step
             self.far = np.where(step == 0, np.inf, (self.plane - self.start) / step)
-        self.side = np.zeros(len(enter))
-        self.unsure = np.zeros(len(enter), bool)
-        self._find_sides(np.arange(len(enter)))
 
     def _find_sides(self, rays: np.ndarray) -> None:
         """Set +1 for rays that are inside where they are, and -1 for those outside.
@@ -505,13 +597,15 @@ class _Walk:
         Where rounding decides, any outcome is possible. A ray in a hidden cell keeps 0 until it
         comes out.
         """
-        if self.grid.hidden is not None:
-            hidden = self.grid.hidden[self.index[rays]]
+        hidden = self._hidden(rays)
+        if hidden is not None:
             self.side[rays[hidden]] = 0
-            rays = rays[~hidden & (self.side[rays] == 0)]
-        cells, error = self.grid.cells(self.index[rays])
-        place = self.start[:, rays] + self.near[rays] * self.step[:, rays] - self._corner(rays)
-        excess = _along(cells, place, np.zeros_like(place))[0]
+            rays = rays[~hidden]
+        rays = rays[self.side[rays] == 0]
+        if not len(rays):
+            return
+        cubic, error = self._field(rays, self.near[rays])
+        excess = cubic[0]
         unsure = rays[(np.abs(excess) <= error) & (error > 0)]
         self.unsure[unsure] = True
         self.hits[0, unsure] = np.minimum(
@@ -519,26 +613,38 @@ class _Walk:
         )
         self.side[rays] = np.where(excess >= 0, 1.0, -1.0)
 
-    def _corner(self, rays: np.ndarray | slice = slice(None)) -> np.ndarray:
+    def _corner(self, rays: np.ndarray) -> np.ndarray:
         index, (_, sy, sz) = self.index[rays], self.grid.strides
         return np.stack([index % sy, index % sz // sy, index // sz])
 
-    def run(self) -> np.ndarray:
+    def _hidden(self, rays: np.ndarray) -> np.ndarray | None:
+        """Mark the rays whose cells are hidden; None where none can be."""
+        return None if self.grid.hidden is None else self.grid.hidden[self.index[rays]]
+
+    def _matters(self, rays: np.ndarray) -> np.ndarray:
+        """Return the bits of the rays' cells that tell what they can matter for; see `Grid`."""
+        return self.grid.matters[self.index[rays]]
+
+    def _field(self, rays: np.ndarray, far: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Make the cubics of rays in their cells from `near` to `far`, and their errors."""
+        start, step = self.start[:, rays], self.step[:, rays]
+        return self.grid.cubics(
+            self._corner(rays), start + self.near[rays] * step, start + far * step
+        )
+
+    def run(self) -> None:
+        """Walk all rays to their end."""
         rays = np.arange(len(self.enter))
         while len(rays):
-            if self.grid.hidden is not None:
-                self._find_sides(rays)
+            self._find_sides(rays)
             axis = np.argmin(self.far[:, rays], axis=0)
             far = np.maximum(np.minimum(self.far[axis, rays], self.leave[rays]), self.near[rays])
             bit = np.where(self.side[rays] > 0, 1, 2)
-            at = np.flatnonzero(self.grid.matters[self.index[rays]] & bit)
+            at = np.flatnonzero(self._matters(rays) & bit)
             if len(at):
                 self._intersect(rays[at], far[at])
             self.near[rays] = far
             rays = self._advance(rays, axis)
-        # A ray whose side at its entry is a matter of rounding may cross anywhere or nowhere.
-        self.hits[2, self.unsure] = np.inf
-        return self.hits
 
     def _advance(self, rays: np.ndarray, axis: np.ndarray) -> np.ndarray:
         """Step to the next cells; return the rays that have one and still look for a crossing."""
@@ -559,21 +665,19 @@ class _Walk:
 
     def _intersect(self, rays: np.ndarray, far: np.ndarray) -> None:
         """Look for the crossings of rays in their cells, between the distances `near` and `far`."""
-        near, corner = self.near[rays], self._corner(rays)
-        a = np.clip(self.start[:, rays] + near * self.step[:, rays] - corner, 0, 1)
-        b = np.clip(self.start[:, rays] + far * self.step[:, rays] - corner, 0, 1)
-        side = self.side[rays]
-        cells, error = self.grid.cells(self.index[rays])
-        cubic = _along(cells, a, b - a) * side
+        near, side = self.near[rays], self.side[rays]
+        cubic, error = self._field(rays, far)
+        cubic = cubic * side
         knots = _monotone_knots(cubic)
         values = _evaluate(cubic[:, None, :], knots)
+        exact = (self._matters(rays) & np.where(side > 0, 4, 8)) != 0
         for row, threshold in enumerate((error, np.zeros_like(error), -error)):
             # Equal to the isovalue is inside: reached from outside, not left from inside.
             crossed = np.where(
                 (side > 0) & (threshold == 0), values < threshold, values <= threshold
             )
             if row == 1:
-                crossed &= (self.grid.matters[self.index[rays]] & np.where(side > 0, 4, 8)) != 0
+                crossed &= exact
             new = np.flatnonzero(crossed.any(axis=0) & (self.hits[row, rays] == np.inf))
             if len(new):
                 s = _first_root(cubic[:, new], knots[:, new], crossed[:, new], threshold[new])
@@ -582,7 +686,7 @@ class _Walk:
                 )
 
 
-class _FullWalk(_Walk):
+class _FullWalk(Walk):
     """Walks on through all crossings, in both directions."""
 
     def crossings(self) -> list[np.ndarray]:
@@ -600,10 +704,8 @@ class _FullWalk(_Walk):
 
     def _collect(self, rays: np.ndarray, far: np.ndarray) -> None:
         """Collect crossings in the rays' cells, one at most a monotone piece of the cubic."""
-        near, corner = self.near[rays], self._corner(rays)
-        a = np.clip(self.start[:, rays] + near * self.step[:, rays] - corner, 0, 1)
-        b = np.clip(self.start[:, rays] + far * self.step[:, rays] - corner, 0, 1)
-        cubic = _along(self.grid.cells(self.index[rays])[0], a, b - a)
+        near = self.near[rays]
+        cubic = self._field(rays, far)[0]
         knots = _monotone_knots(cubic)
         inside = _evaluate(cubic[:, None, :], knots) >= 0
         for piece in range(3):

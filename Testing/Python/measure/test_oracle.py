@@ -5,20 +5,9 @@ import pytest
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkRenderingCore import vtkCamera
 
+from helpers.interpolation import interpolate
 from progiso.measure import tolerances
 from progiso.oracle.caster import Camera, Slack, Volume, cast, cast_rays
-
-
-def sample(values, points):
-    """Interpolate trilinearly, point by point, otherwise than by the caster's polynomials."""
-    cell = np.clip(np.floor(points).astype(int), 0, np.array(values.shape[::-1]) - 2)
-    local = points - cell
-    total = np.zeros(points.shape[:-1])
-    for corner in np.ndindex(2, 2, 2):
-        weight = np.prod(np.where(corner, local, 1 - local), axis=-1)
-        x, y, z = np.moveaxis(cell + corner, -1, 0)
-        total += weight * values[z, y, x]
-    return total
 
 
 def random_rays(rng, shape, count):
@@ -102,14 +91,14 @@ def test_first_root_by_dense_sampling(seed):
             assert depth == np.inf or not (t[0] < depth < t[-1])
             continue
         path = t[within]
-        inside = sample(values, points[within]) >= isovalue
+        inside = interpolate(values, points[within]) >= isovalue
         before = inside[path < depth - 1e-9]
         assert np.all(before == before[:1]), "a side changes before the hit"
         if np.isfinite(depth):
             at = origin + depth * direction
-            assert abs(sample(values, at) - isovalue) < 1e-9
+            assert abs(interpolate(values, at) - isovalue) < 1e-9
             around = (
-                sample(values, origin + np.outer([depth - 1e-7, depth + 1e-7], direction))
+                interpolate(values, origin + np.outer([depth - 1e-7, depth + 1e-7], direction))
                 >= isovalue
             )
             assert around[0] != around[1]
