@@ -14,11 +14,14 @@ from ._warnings import warn_user
 from .appearance import MAX_ISOVALUES, as_list, check_count, is_color, set_colors, set_opacities
 from .compression import doubts, is_compressed
 from .io.arrays import as_image
-from .options import RenderOptions, SurfaceStyle
+from .options import RenderOptions, SurfaceStyle, checked_level_of_detail
 from .vtkProgIsoKernels import vtkIsosurfaceVolume, vtkProgressiveIsosurfaceMapper
 
 #: Most blocks that a ray tests ahead in one pass.
 MAX_SPECULATION = 64
+
+#: How many pixels the samples of a level of detail may be apart, at least and at most.
+PIXEL_TOLERANCES = (1 / 16, 64)
 
 
 def make_isosurface(
@@ -34,6 +37,8 @@ def make_isosurface(
     specular_power: float = 20.0,
     speculation: bool | int = True,
     memory_budget: int = 0,
+    level_of_detail: str = "off",
+    pixel_tolerance: float = 1.0,
     detailed: bool = False,
     rate: float | None = None,
     mask_nan: bool = True,
@@ -62,6 +67,15 @@ def make_isosurface(
     memory_budget : int, default: 0
         Bound in bytes on the GPU memory beside the compressed volume; 0 for the mapper's own
         choice.
+    level_of_detail : str, default: "off"
+        "on" draws each part of the surface from the coarsest copy of the volume whose samples are
+        at most `pixel_tolerance` pixels apart there, so that time and memory follow the pixels
+        (``levels`` of `statistics` tells how many come from which); "interactive" does so only
+        while the view moves; "off" is exact. A plain image gets such copies when it is compressed,
+        a compressed volume has them by ``levels`` of `compress`; one without is drawn exactly, with
+        a warning.
+    pixel_tolerance : float, default: 1
+        Pixels between samples, 1/16 to 64; more of them are faster.
     detailed : bool, default: False
         Whether the statistics include the time of each stage and the distinct blocks of each
         pass, which takes time itself.
@@ -91,6 +105,11 @@ def make_isosurface(
     >>> image = progiso.read(fetch("sphere", size=32))
     >>> renderer = vtkRenderer()
     >>> renderer.AddVolume(progiso.make_isosurface(image, 0.8, color=(0.9, 0.85, 0.75)))
+
+    A far view, from copies of the volume where these are fine enough for the pixels:
+
+    >>> volume = progiso.compress(progiso.read(fetch("sphere", size=96)), levels=3)
+    >>> renderer.AddVolume(progiso.make_isosurface(volume, 0.8, level_of_detail="on"))
     """
     style = SurfaceStyle(
         color=color,
@@ -101,7 +120,13 @@ def make_isosurface(
         specular=specular,
         specular_power=specular_power,
     )
-    options = RenderOptions(speculation=speculation, memory_budget=memory_budget, detailed=detailed)
+    options = RenderOptions(
+        speculation=speculation,
+        memory_budget=memory_budget,
+        level_of_detail=level_of_detail,
+        pixel_tolerance=pixel_tolerance,
+        detailed=detailed,
+    )
     prop = style_isosurface(image, isovalue, style, options)
     if rate is not None:
         prop.GetMapper().SetRate(_in_range("rate", rate, 0, 32, above=True))
@@ -119,6 +144,9 @@ def style_isosurface(
     mapper.SetLitLikeMeshes(True)  # users expect the light that a contour's mesh would get
     mapper.SetSpeculationLimit(_speculation_limit(options.speculation))
     mapper.SetMemoryBudget(int(_in_range("memory_budget", options.memory_budget, 0, 2**62)))
+    mapper.SetLevelOfDetail(checked_level_of_detail(options.level_of_detail))
+    tolerance = _in_range("pixel_tolerance", options.pixel_tolerance, *PIXEL_TOLERANCES)
+    mapper.SetPixelTolerance(tolerance)
     mapper.SetDetailedStatistics(bool(options.detailed))
     prop = vtkIsosurfaceVolume()
     prop.SetMapper(mapper)

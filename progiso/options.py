@@ -38,6 +38,9 @@ class CompressionOptions:
 #: Most levels of detail that a volume may have.
 MAX_LEVELS = 11
 
+#: Whether coarser copies draw far parts of a surface; the order is that of the mapper's values.
+LEVELS_OF_DETAIL = ("off", "on", "interactive")
+
 #: Bits per sample of what is not labels, where nothing else is asked for.
 DEFAULT_RATE = 8.0
 
@@ -117,6 +120,42 @@ def checked_levels(levels: int, name: str = "levels") -> int:
     return number
 
 
+def checked_level_of_detail(level_of_detail: str) -> int:
+    """Return the mapper's number of a level of detail.
+
+    Raises
+    ------
+    ValueError
+        When it is neither off, on nor interactive.
+
+    Examples
+    --------
+    >>> checked_level_of_detail("off")
+    0
+    """
+    if level_of_detail not in LEVELS_OF_DETAIL:
+        raise ValueError(
+            f"level_of_detail must be 'off', 'on' or 'interactive', got {level_of_detail!r:.60}"
+        )
+    return LEVELS_OF_DETAIL.index(level_of_detail)
+
+
+def levels_to_make(level_of_detail: str = "off") -> int:
+    """Return how many levels a plain image gets where nobody says: all, if they may be drawn.
+
+    Raises
+    ------
+    ValueError
+        When there is no such level of detail.
+
+    Examples
+    --------
+    >>> levels_to_make(), levels_to_make("on")
+    (0, 11)
+    """
+    return MAX_LEVELS if checked_level_of_detail(level_of_detail) else 0
+
+
 def _is_auto(rate: Rate) -> bool:
     return isinstance(rate, str) and rate == "auto"
 
@@ -151,6 +190,8 @@ class RenderOptions:
 
     speculation: bool | int = True
     memory_budget: int = 0
+    level_of_detail: str = "off"
+    pixel_tolerance: float = 1.0
     detailed: bool = False
 
 
@@ -187,6 +228,8 @@ class RenderKeywords(TypedDict, total=False):
 
     speculation: bool | int
     memory_budget: int
+    level_of_detail: str
+    pixel_tolerance: float
     detailed: bool
 
 

@@ -24,7 +24,13 @@ from .camera import Camera, orbit_camera, view_camera
 from .io.compressing import as_compressed
 from .io.files import atomic_path
 from .isosurface import style_isosurface
-from .options import CompressionKeywords, CompressionOptions, RenderOptions, SurfaceStyle
+from .options import (
+    CompressionKeywords,
+    CompressionOptions,
+    RenderOptions,
+    SurfaceStyle,
+    levels_to_make,
+)
 from .statistics import depth, statistics
 from .vtkProgIsoKernels import vtkIsosurfaceVolume
 
@@ -71,6 +77,8 @@ def render(
     background: _Color = "#20242b",
     speculation: bool | int = True,
     memory_budget: int = 0,
+    level_of_detail: str = "off",
+    pixel_tolerance: float = 1.0,
     detailed: bool = False,
     **compression: Unpack[CompressionKeywords],
 ) -> RenderResult:
@@ -91,11 +99,12 @@ def render(
     color, background : str or sequence of 3 float
         A colour's name, ``#rrggbb``, or red, green and blue from 0 to 1. A sequence of colours
         has one for each isovalue.
-    opacity, speculation, memory_budget, detailed
-        As in `make_isosurface`.
+    opacity, speculation, memory_budget, level_of_detail, pixel_tolerance, detailed
+        As in `make_isosurface`. A window off screen is still: for it "interactive" is "off".
     **compression
         A plain image is compressed first: ``rate``, ``tolerance``, ``array``, ``component``,
-        ``mask_nan``, ``threads`` and ``progress`` as in `compress`.
+        ``mask_nan``, ``levels``, ``threads`` and ``progress`` as in `compress`, but with all levels
+        of detail, unless `level_of_detail` is "off".
 
     Returns
     -------
@@ -115,11 +124,20 @@ def render(
     >>> result = progiso.render(progiso.read(fetch("sphere", size=64)), 0.5, size=(320, 240))
     >>> result.image.shape, result.statistics["converged"]
     ((240, 320, 3), True)
+
+    From far off, where samples are nearer to each other than pixels:
+
+    >>> image = progiso.read(fetch("sphere", size=96))
+    >>> far = progiso.view_camera(image, zoom=0.1)
+    >>> result = progiso.render(image, 0.5, size=(320, 240), camera=far, level_of_detail="on")
+    >>> result.statistics["levels"][0], result.statistics["levels"][1] > 0
+    (0, True)
     """
     check_display()
     width, height = _checked_size(size)
     if orbit is not None and camera is not None:
         raise ValueError("give either an orbit or a camera, not both")
+    compression.setdefault("levels", levels_to_make(level_of_detail))
     image = as_compressed(image, CompressionOptions(**compression))
     if orbit is not None:
         camera = orbit_camera(image, *orbit)
@@ -128,7 +146,13 @@ def render(
         image,
         isovalue,
         SurfaceStyle(color=colors, opacity=opacity),
-        RenderOptions(speculation=speculation, memory_budget=memory_budget, detailed=detailed),
+        RenderOptions(
+            speculation=speculation,
+            memory_budget=memory_budget,
+            level_of_detail=level_of_detail,
+            pixel_tolerance=pixel_tolerance,
+            detailed=detailed,
+        ),
     )
     window, renderer = _scene(prop, width, height)
     renderer.SetBackground(parse_color(background))

@@ -65,6 +65,10 @@ def statistics(
         ``stage_ms``
             Milliseconds of each stage over all passes; empty unless the mapper's
             ``DetailedStatistics`` are on.
+        ``levels``
+            {level: pixels}: for how many pixels the nearest surface is drawn from which level of
+            detail, 0 being the volume itself; where two blend, it counts for the finer one. In
+            JSON, where keys are strings, ``{"0": 9000, "1": 200}``.
         ``converged``
             Whether the image is complete.
         ``gl``
@@ -97,6 +101,7 @@ def statistics(
         "stages": [source.GetStage(i) for i in stages],
         "left_out": [source.GetStageLeftOut(i) for i in range(source.GetNumberOfStagesLeftOut())],
         "stage_ms": _stage_milliseconds(source) if mapper.GetDetailedStatistics() else {},
+        "levels": {i: source.GetLevelPixels(i) for i in range(source.GetNumberOfLevels())},
         "converged": bool(source.GetConverged()),
         "gl": source.GetGLDescription(),
     }

@@ -24,7 +24,13 @@ from ..io.compressing import as_compressed, compress_source
 from ..io.files import atomic_path, check_output, check_outputs
 from ..io.volumes import COMPRESSED_SUFFIXES, PLAIN_SUFFIXES
 from ..mesh import SURFACE_SUFFIXES
-from ..options import DEFAULT_RATE, CompressionOptions, RenderOptions, SurfaceStyle
+from ..options import (
+    DEFAULT_RATE,
+    CompressionOptions,
+    RenderOptions,
+    SurfaceStyle,
+    levels_to_make,
+)
 from .info import describe_source, file_bytes, verify_source
 from .progress import progress_bar
 
@@ -52,8 +58,9 @@ def _read(parsed: argparse.Namespace, name: str = "file") -> vtkImageData:
 
 
 def _read_compressed(parsed: argparse.Namespace, name: str = "file") -> vtkImageData:
-    """Read the input, and compress it unless it is compressed."""
-    given = _given(parsed, CompressionOptions)
+    """Read the input to draw it, and compress it unless it is compressed."""
+    levels = levels_to_make(parsed.level_of_detail)
+    given = {"levels": levels, **_given(parsed, CompressionOptions)}
     with _open(parsed, name) as source, _naming(source.about.what):
         if source.more_than_samples:
             with _reading(parsed, name) as progress:

@@ -16,6 +16,7 @@ from ..io.formats import FORMATS
 from ..io.source import SPACES
 from ..io.volumes import PLAIN_SUFFIXES
 from ..mesh import SURFACE_SUFFIXES
+from ..options import LEVELS_OF_DETAIL
 from ..verify.command import add_verify
 from . import commands
 from .arguments import (
@@ -245,6 +246,15 @@ def _add_render(subparsers: _Subparsers) -> None:
         "--memory-budget", type=byte_count, default=0, metavar="BYTES",
         help="bound on the GPU memory beside the compressed volume, as 200000000, 200M or 1.5G; "
         "0 (default): automatic",
+    )  # fmt: skip
+    command.add_argument(
+        "--level-of-detail", choices=LEVELS_OF_DETAIL, default="off",
+        help="on: coarser copies of the volume draw what is far, where they are fine enough for "
+        "the pixels (off, the default, is exact, and so is interactive: off screen nothing moves)",
+    )  # fmt: skip
+    command.add_argument(
+        "--pixel-tolerance", type=float, default=1.0, metavar="P",
+        help="pixels that samples of such copies may be apart, 1/16 to 64 (default: 1)",
     )  # fmt: skip
     command.add_argument(
         "--no-speculation",

@@ -23,6 +23,7 @@ from ..options import (
     PlotterKeywords,
     RenderOptions,
     SurfaceStyle,
+    levels_to_make,
     take,
 )
 from ..vtkProgIsoKernels import vtkIsosurfaceVolume
@@ -132,9 +133,10 @@ def add_isosurface(
         Transformation of the prop, applied last.
     **options
         ``ambient``, ``diffuse``, ``specular``, ``specular_power``, ``speculation``,
-        ``memory_budget`` and ``detailed`` as in :func:`progiso.make_isosurface`; for plain data
-        ``rate``, ``tolerance``, ``component``, ``mask_nan``, ``threads`` and ``progress`` as in
-        :func:`progiso.compress`.
+        ``memory_budget``, ``level_of_detail``, ``pixel_tolerance`` and ``detailed`` as in
+        :func:`progiso.make_isosurface`; for plain data ``rate``, ``tolerance``, ``component``,
+        ``mask_nan``, ``levels``, ``threads`` and ``progress`` as in :func:`progiso.compress`, but
+        with all levels of detail, unless ``level_of_detail`` is ``"off"``.
 
     Returns
     -------
@@ -165,9 +167,14 @@ def add_isosurface(
     Several isovalues, the outer surface translucent, coloured by their values:
 
     >>> prop = progiso.add_isosurface(plotter, image, [10, 20], cmap="plasma", opacity=[1, 0.3])
+
+    Coarser where that is fine enough for the pixels, while the view moves:
+
+    >>> prop = progiso.add_isosurface(plotter, image, 20, level_of_detail="interactive")
     """
     keywords = dict(options)
     rendering = take(RenderOptions, keywords)
+    keywords.setdefault("levels", levels_to_make(rendering.level_of_detail))
     image = as_compressed(volume, take(CompressionOptions, keywords, array=scalars))
     table = None
     if cmap is not None or (color is None and not is_number(isovalue)):
@@ -216,6 +223,7 @@ def add_isosurface_slider(
     **options: Any,
 ) -> vtkIsosurfaceVolume:
     """Add an isosurface with a slider; see :meth:`IsosurfaceComponent.add_isosurface_slider`."""
+    options.setdefault("levels", levels_to_make(options.get("level_of_detail", "off")))
     compression = take(CompressionOptions, options, array=options.pop("scalars", None))
     image = as_compressed(volume, compression)
     about = describe(image)

@@ -235,6 +235,46 @@ def test_speculation_and_memory_budget_change_no_depth(folder):
     assert at_once["stage_ms"] == {}
 
 
+@pytest.fixture(scope="module")
+def with_levels(folder):
+    """Make a plain volume, its compressed twin, and one with levels; return options of a far
+    view."""
+    image = make_image(blobs((90, 80, 100), 3, waves=6))
+    progiso.save(image, folder / "far.vti")
+    progiso.save(progiso.compress(image), folder / "bare.vti")
+    progiso.save(progiso.compress(image, levels=3), folder / "leveled.vti")
+    return ("--size", "120x90", "--zoom", 0.4)
+
+
+@pytest.mark.parametrize("mode", [(), ("--level-of-detail", "interactive")])
+def test_a_picture_off_screen_is_still(folder, with_levels, mode):
+    """It is exact, unless levels are drawn in any case."""
+    expected, _ = render(folder, "bare.vti", *with_levels)
+    depth, statistics = render(folder, "leveled.vti", *with_levels, *mode)
+    assert depth.tobytes() == expected.tobytes()
+    assert statistics["levels"] == {"0": np.isfinite(depth).sum()}
+
+
+def test_a_note_says_that_there_are_no_levels(folder, with_levels):
+    arguments = ("--isovalue", 0.1, *with_levels, "--level-of-detail", "on")
+    done = run_progiso(folder, "render", "bare.vti", *arguments)
+    assert done.returncode == 0 and done.stderr.count("note: ") == 1, done.stderr
+    assert "no levels of detail" in done.stderr
+
+
+def test_level_of_detail(folder, with_levels):
+    """Far parts come from levels, which a plain file gets here; the tolerance says how many."""
+    on = (*with_levels, "--level-of-detail", "on")
+    exact, _ = render(folder, "bare.vti", *with_levels)
+    depth, statistics = render(folder, "leveled.vti", *on)
+    levels = statistics["levels"]
+    assert set(levels) == {"0", "1"} and sum(levels.values()) == np.isfinite(depth).sum()
+    assert levels["1"] > 0 and depth.tobytes() != exact.tobytes()
+    assert render(folder, "far.vti", *on)[0].tobytes() == depth.tobytes()
+    fine, statistics = render(folder, "leveled.vti", *on, "--pixel-tolerance", 1 / 16)
+    assert statistics["levels"]["1"] == 0 and fine.tobytes() == exact.tobytes()
+
+
 def test_render_plain_at_a_rate(folder):
     """A plain file, rendered at a rate, shows what its compressed file shows."""
     arguments = ("--size", "120x90", "--orbit", "0/3")
@@ -321,6 +361,14 @@ FAILURES = {
         "--parallel",
     ),
     "zfp header": (["info", "packed.vti", "--zfp-header", "4x4x4:8"], "--zfp-header"),
+    "level of detail": (
+        ["render", "packed.vti", "--isovalue", "0", "--level-of-detail", "some"],
+        "--level-of-detail: invalid choice: 'some'",
+    ),
+    "pixel tolerance": (
+        ["render", "packed.vti", "--isovalue", "0", "--pixel-tolerance", "100"],
+        "pixel_tolerance must be in [0.0625, 64], got 100",
+    ),
     "budget's unit": (["render", "packed.vti", "--isovalue", "0", "--memory-budget", "3T"], "3T"),
     "isovalue": (["render", "packed.vti", "--isovalue", "nan"], "isovalue"),
     "opacities": (

@@ -112,6 +112,26 @@ WRONG = {
     "colour's range": ({"color": (0, 0, 255)}, ValueError, r"color must be in \[0, 1\], got 255"),
     "opacities": ({"opacity": [1, 1, 1]}, ValueError, "opacity: 3 for 2 isovalues; give 1 or 2"),
     "opacity's range": ({"opacity": [1, 1.5]}, ValueError, r"opacity must be in \[0, 1\], got 1.5"),
+    "level of detail": (
+        {"level_of_detail": "high"},
+        ValueError,
+        "level_of_detail must be 'off', 'on' or 'interactive', got 'high'",
+    ),
+    "level of detail's kind": (
+        {"level_of_detail": True},
+        ValueError,
+        "level_of_detail must be 'off', 'on' or 'interactive', got True",
+    ),
+    "pixel tolerance": (
+        {"pixel_tolerance": 0},
+        ValueError,
+        r"pixel_tolerance must be in \[0.0625, 64\], got 0",
+    ),
+    "pixel tolerance's kind": (
+        {"pixel_tolerance": "1"},
+        TypeError,
+        "pixel_tolerance must be a number, got '1'",
+    ),
     "opacity's kind": ({"opacity": "linear"}, TypeError, "opacity must be a number, got 'linear'"),
 }
 

@@ -35,6 +35,7 @@ def test_keys(scene):
             "stages",
             "left_out",
             "stage_ms",
+            "levels",
             "converged",
             "camera",
             "size",

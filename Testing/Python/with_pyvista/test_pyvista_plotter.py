@@ -78,6 +78,73 @@ def test_subplots_and_linked_views(ball):
     plotter.close()
 
 
+# --- levels of detail -----------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def large_ball():
+    """Return distances from the centre, of so many samples that a level of detail is made."""
+    image = pyvista.ImageData(dimensions=(73, 73, 73), origin=(-36, -36, -36))
+    image["distance"] = np.linalg.norm(image.points, axis=1).astype(np.float32)
+    return image
+
+
+@pytest.mark.parametrize(
+    "options, levels",
+    [
+        ({}, 0),
+        ({"level_of_detail": "on"}, 1),
+        ({"level_of_detail": "interactive"}, 1),
+        ({"level_of_detail": "on", "levels": 0}, 0),
+        ({"levels": 3}, 1),
+    ],
+)
+@pytest.mark.parametrize("slider", [False, True])
+def test_plain_images_get_levels_of_detail(plotter, large_ball, options, levels, slider):
+    """They do where these may be drawn, unless the caller says how many."""
+    if slider:
+        prop = plotter.progiso.add_isosurface_slider(large_ball, value=30, **options)
+    else:
+        prop = plotter.progiso.add_isosurface(large_ball, 30, **options)
+    assert len(progiso.describe(prop.GetMapper().GetInput())["levels"]) == levels
+    assert prop.GetMapper().GetLevelOfDetail() == ("off", "on", "interactive").index(
+        options.get("level_of_detail", "off")
+    )
+
+
+def test_the_view_is_coarse_while_the_mouse_turns_it(plotter, large_ball):
+    """As soon as the button is released it is exact again."""
+    prop = plotter.progiso.add_isosurface(
+        large_ball, 30, level_of_detail="interactive", pixel_tolerance=64
+    )
+    plotter.enable_trackball_style()
+    plotter.show(auto_close=False)
+    found, interactor = [], plotter.iren.interactor
+
+    def look():
+        found.append(plotter.progiso.statistics(prop)["levels"])
+
+    look()
+    interactor.SetEventInformation(120, 120, 0, 0, chr(0), 0, None)
+    interactor.LeftButtonPressEvent()
+    for x in (130, 140):
+        interactor.SetEventInformation(x, 120, 0, 0, chr(0), 0, None)
+        interactor.MouseMoveEvent()
+        look()
+    interactor.LeftButtonReleaseEvent()
+    look()
+    before, *moving, after = found
+    assert list(before) == list(after) == [0] and before[0] > 1000 and after[0] > 1000
+    assert all(levels[0] == 0 and levels[1] > 1000 for levels in moving), moving
+
+
+@pytest.mark.parametrize("method", ["add_isosurface", "add_isosurface_slider"])
+def test_no_such_level_of_detail(plotter, large_ball, method):
+    with pytest.raises(ValueError, match="level_of_detail must be 'off', 'on' or 'interactive'"):
+        getattr(plotter.progiso, method)(large_ball, (10, 30), level_of_detail="fast")
+    assert not plotter.actors
+
+
 # --- picking --------------------------------------------------------------------------------------
 
 
