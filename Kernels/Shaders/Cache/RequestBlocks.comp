@@ -35,15 +35,14 @@ void LookAhead(uint pixel, uint speculation)
   GridCursor at = OutsideGrid();
   for (uint i = 0u; i < speculation && FindNextBlock(ray, i > 0u, place, at); ++i)
   {
-    ivec3 reach = DualGridReach(ray, place, CrossBlock(ray, place));
-    AddAhead(place.Block, reach);
+    BlockNeeds needs = NeedsOf(ray, place, CrossBlock(ray, place));
+    AddAhead(place.Block, needs.Reach);
 #ifdef LEVELS
-    if (ray.Blends)
+    if (needs.NeedsNext)
     {
       ivec3 coarse = place.Block >> HalvedByNext();
-      ivec3 coarseReach = ReachInNextLevel(place.Block, reach);
       ++level;
-      AddAhead(coarse, coarseReach);
+      AddAhead(coarse, needs.CoarseReach);
       --level;
     }
 #endif

@@ -1,4 +1,5 @@
 #include "Shared/Scene.glsl"
+#include "Rays/LevelSpans.glsl"
 #include "Rays/Rays.glsl"
 #include "Rays/TraverseGrid.glsl"
 
@@ -16,17 +17,46 @@ ivec3 DualGridReach(Ray ray, GridPlace place, BlockCrossing crossing)
   return min(reached, LEVEL_GRID.Blocks - 1 - place.Block);
 }
 
+// The blocks that a ray needs to be intersected with one: itself, the neighbours that it reaches
+// into, and where levels of detail blend those of the next.
+struct BlockNeeds
+{
+  ivec3 Reach;
 #ifdef LEVELS
-// The same for the block of the next level that holds this one: to the next blocks if its own last
-// cells are there. (On an axis that is halved, whether or not the ray meets them.)
+  bool NeedsNext;
+  ivec3 CoarseReach; // of the next level's block that holds this one
+#endif
+};
+
+#ifdef LEVELS
+// How far a block of the next level reaches for one that it holds: to the next blocks if its own
+// last cells are there. (On an axis that is halved, whether or not the ray meets them.)
 ivec3 ReachInNextLevel(ivec3 block, ivec3 reach)
 {
-  if (level + 1 >= volume.NumberOfLevels)
-  {
-    return ivec3(0);
-  }
   ivec3 halved = HalvedByNext();
   ivec3 coarse = Choose(reach, block & 1, -halved);
   return min(coarse, volume.Levels[level + 1].Blocks - 1 - (block >> halved));
+}
+
+// A block in which blending begins counts as a whole, from before: a ray that waits in the part
+// behind goes on in the part before, and asks for what it needs there.
+BlockNeeds NeedsOf(Ray ray, GridPlace place, BlockCrossing crossing)
+{
+  BlockNeeds needs;
+  bool cut = !ray.Blends && !IsLess(crossing.Leave, BlendBegin(level));
+  if (cut)
+  {
+    crossing.Leave = SmallerOf(ray.End, SmallestOf(place.Exits));
+  }
+  needs.Reach = DualGridReach(ray, place, crossing);
+  needs.NeedsNext = cut || ray.Blends;
+  needs.CoarseReach =
+    needs.NeedsNext ? ReachInNextLevel(place.Block, needs.Reach) : ivec3(0);
+  return needs;
+}
+#else
+BlockNeeds NeedsOf(Ray ray, GridPlace place, BlockCrossing crossing)
+{
+  return BlockNeeds(DualGridReach(ray, place, crossing));
 }
 #endif

@@ -31,7 +31,7 @@ bool FindHit(inout Ray ray, inout GridPlace place, out Hit hit)
   while (!waits && hit.Key == NO_HIT && FindNextBlock(ray, leaves, place, at))
   {
     BlockVisit visit = PlanVisit(ray, place);
-    waits = LacksBlocks(ray, place.Block, visit);
+    waits = LacksBlocks(place.Block, visit);
     if (!waits)
     {
       VisitBlock(ray, place, visit, hit);

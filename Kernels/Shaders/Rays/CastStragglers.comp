@@ -66,7 +66,7 @@ bool CastRay(uint pixel)
     GridPlace place;
     bool took = TakeBlock(ray, leaves, next, at, inside, place);
     BlockVisit visit = PlanVisit(ray, place);
-    if (took && LacksBlocks(ray, place.Block, visit))
+    if (took && LacksBlocks(place.Block, visit))
     {
       atomicMin(firstMissing, lane);
     }

@@ -10,52 +10,44 @@
 struct BlockVisit
 {
   BlockCrossing Crossing;
-  ivec3 Reach; // into the next blocks
-#ifdef LEVELS
-  ivec3 CoarseReach; // likewise, of the coarse block where the next level blends in
-#endif
+  BlockNeeds Needs;
 };
 
 BlockVisit PlanVisit(Ray ray, GridPlace place)
 {
-  BlockVisit visit;
-  visit.Crossing = CrossBlock(ray, place);
-  visit.Reach = DualGridReach(ray, place, visit.Crossing);
-#ifdef LEVELS
-  visit.CoarseReach = ReachInNextLevel(place.Block, visit.Reach);
-#endif
-  return visit;
+  BlockCrossing crossing = CrossBlock(ray, place);
+  return BlockVisit(crossing, NeedsOf(ray, place, crossing));
 }
 
 // Is a block of this visit not in the cache? Finds their slots; those of the next level are aside.
-bool LacksBlocks(Ray ray, ivec3 block, BlockVisit visit)
+bool LacksBlocks(ivec3 block, BlockVisit visit)
 {
   bool lacks = false;
 #ifdef LEVELS
-  if (ray.Blends)
+  if (visit.Needs.NeedsNext)
   {
     ivec3 coarse = block >> HalvedByNext();
     ++level;
-    FindSlots(coarse, visit.CoarseReach);
+    FindSlots(coarse, visit.Needs.CoarseReach);
     --level;
     lacks = LacksSlots();
     ExchangeSlots();
   }
 #endif
-  FindSlots(block, visit.Reach);
+  FindSlots(block, visit.Needs.Reach);
   return lacks || LacksSlots();
 }
 
 // Intersects the ray with the block, whose slots were found last. False if there is no hit.
 bool VisitBlock(Ray ray, GridPlace place, BlockVisit visit, out Hit hit)
 {
-  UseBlocks(place.Block, visit.Reach);
+  UseBlocks(place.Block, visit.Needs.Reach);
 #ifdef LEVELS
-  if (ray.Blends)
+  if (visit.Needs.NeedsNext)
   {
     ivec3 coarse = place.Block >> HalvedByNext();
     ++level;
-    UseBlocks(coarse, visit.CoarseReach);
+    UseBlocks(coarse, visit.Needs.CoarseReach);
     --level;
   }
 #endif
