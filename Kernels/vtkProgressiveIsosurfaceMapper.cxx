@@ -219,7 +219,7 @@ void vtkProgressiveIsosurfaceMapper::PrintSelf(ostream& os, vtkIndent indent)
     os << " " << bound;
   }
   os << "\n" << indent << "CompositeIndex: " << this->CompositeIndex << "\n";
-  const char* const levels[] = { "off\n", "on\n", "interactive\n" };
+  const char* const levels[] = { "off\n", "on\n", "interactive\n", "conservative\n" };
   os << indent << "LevelOfDetail: " << levels[this->LevelOfDetail];
   os << indent << "PixelTolerance: " << this->PixelTolerance << "\n";
   os << indent << "SpeculationLimit: " << this->SpeculationLimit << "\n";
@@ -528,7 +528,7 @@ void vtkProgressiveIsosurfaceMapper::WarnOfTightBudget()
 bool vtkProgressiveIsosurfaceMapper::DrawsLevels(vtkRenderWindow* window) const
 {
   const bool moves = window->GetDesiredUpdateRate() >= LeastRateOfMovement;
-  return this->Impl->HandedLevels > 0 && (this->LevelOfDetail == LevelOfDetailOn || moves);
+  return this->Impl->HandedLevels > 0 && (this->LevelOfDetail != LevelOfDetailInteractive || moves);
 }
 
 bool vtkProgressiveIsosurfaceMapper::UpdateScene(vtkRenderer* renderer, vtkVolume* volume)
@@ -567,6 +567,7 @@ bool vtkProgressiveIsosurfaceMapper::UpdateScene(vtkRenderer* renderer, vtkVolum
     : volume->GetProperty()->GetRGBTransferFunction();
   const CompressedInput& colors = impl.Inputs.GetColors();
   vtkCompressedVolume* colorVolume = colors.GetImage() ? colors.GetVolume() : nullptr;
+  scene.Conservative = this->LevelOfDetail == LevelOfDetailConservative;
   scene.Categories = colorVolume && table->GetIndexedLookup();
   scene.Translucent = this->DrawsTranslucent(volume->GetProperty());
   const Obstacles obstacles = scene.Translucent ? FindObstacles(renderer, volume) : Obstacles();
@@ -758,25 +759,20 @@ ImageStatistics vtkProgressiveIsosurfaceMapper::CollectFigures(bool detailed)
   return image;
 }
 
-// Of the image as far as it has come.
+// Counts, of the image as far as it has come, the pixels of each level and the uncertain ones.
 void vtkProgressiveIsosurfaceMapper::CountPixelsOfLevels(ImageStatistics& statistics)
 {
   Internals& impl = *this->Impl;
   const PipelineScene& scene = impl.View.GetScene();
-  std::vector<std::int64_t>& pixels = statistics.LevelPixels;
-  pixels.assign(std::max(scene.View.NumberOfLevels, 1), 0);
   if (!IsEmpty(scene.View) && impl.Pipeline.GetStatus() && impl.Pipeline.IsStarted())
   {
-    const std::vector<std::uint32_t> keys = impl.Pipeline.GetHits().ReadKeys();
-    const std::vector<float> first =
-      scene.Translucent ? impl.Pipeline.GetHits().ReadDepths() : std::vector<float>();
-    for (const double depth : HitDepths(scene.View, keys, first))
-    {
-      if (std::isfinite(depth))
-      {
-        ++pixels[LevelAtDepth(scene.View, depth)];
-      }
-    }
+    HitReadback hits = impl.Pipeline.GetHits();
+    const bool flagged = scene.View.NumberOfLevels > 1;
+    const std::vector<float> depths =
+      flagged || scene.Translucent ? hits.ReadDepths() : std::vector<float>();
+    const PixelsOfLevels counts = ::CountLevels(scene, hits.ReadKeys(), depths);
+    statistics.LevelPixels = counts.Pixels;
+    statistics.UncertainFraction = counts.UncertainFraction;
   }
 }
 

@@ -210,6 +210,9 @@ public:
    * - LevelOfDetailInteractive: on while the window asks for a frame rate of 1 per second or more
    *   (vtkRenderWindow::SetDesiredUpdateRate(), which interactor styles set while the camera
    *   moves), exact when it is still.
+   * - LevelOfDetailConservative: as on, but where a ray passes a block of a coarser level without a
+   *   hit, and samples of the volume itself lie on both sides of the isovalue there, the ray looks
+   *   at these: nothing that is in the volume is lost, however thin. Costs more where much is thin.
    *
    * A volume without levels is drawn exactly, with a warning; also, without one, where the colours
    * are categories, of which a coarser level has none.
@@ -218,13 +221,15 @@ public:
   {
     LevelOfDetailOff,
     LevelOfDetailOn,
-    LevelOfDetailInteractive
+    LevelOfDetailInteractive,
+    LevelOfDetailConservative
   };
-  vtkSetClampMacro(LevelOfDetail, int, LevelOfDetailOff, LevelOfDetailInteractive);
+  vtkSetClampMacro(LevelOfDetail, int, LevelOfDetailOff, LevelOfDetailConservative);
   vtkGetMacro(LevelOfDetail, int);
   void SetLevelOfDetailToOff() { this->SetLevelOfDetail(LevelOfDetailOff); }
   void SetLevelOfDetailToOn() { this->SetLevelOfDetail(LevelOfDetailOn); }
   void SetLevelOfDetailToInteractive() { this->SetLevelOfDetail(LevelOfDetailInteractive); }
+  void SetLevelOfDetailToConservative() { this->SetLevelOfDetail(LevelOfDetailConservative); }
   ///@}
 
   ///@{

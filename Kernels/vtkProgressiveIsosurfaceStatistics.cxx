@@ -238,6 +238,11 @@ vtkTypeInt64 vtkProgressiveIsosurfaceStatistics::GetLevelPixels(int level)
   return HasIndex(pixels, level) ? pixels[level] : 0;
 }
 
+double vtkProgressiveIsosurfaceStatistics::GetUncertainFraction()
+{
+  return this->GetImage().UncertainFraction;
+}
+
 bool vtkProgressiveIsosurfaceStatistics::GetConverged()
 {
   return this->GetImage().Converged;

@@ -144,6 +144,14 @@ public:
   ///@}
 
   /**
+   * The fraction of the image's pixels that are uncertain, 0 … 1: whose rays have passed, before
+   * the surface that they show, a block of a coarser level without a hit where samples of the
+   * volume itself lie on both sides of the isovalue. 0 where the volume itself is drawn, and of a
+   * conservative image, whose rays look there.
+   */
+  double GetUncertainFraction();
+
+  /**
    * Whether the image is complete.
    */
   bool GetConverged();

@@ -4,6 +4,8 @@
 
 #include "Shaders/HitSections.h"
 
+#include <cmath>
+
 namespace
 {
 // Byte of a pixel's word.
@@ -34,6 +36,7 @@ PixelHit HitReadback::Read(std::int64_t pixel)
   PixelHit hit;
   this->Transfer.Read(this->Hits, Offset(this->Needs, &HitSections::Key, pixel), &hit.Key, 4);
   this->Transfer.Read(this->Hits, Offset(this->Needs, &HitSections::Depth, pixel), &hit.Depth, 4);
+  hit.Depth = std::fabs(hit.Depth);
   if (this->Needs.SeveralIsovalues)
   {
     std::uint32_t isovalues = 0; // of the first hit in the upper half

@@ -15,7 +15,7 @@
 struct PixelHit
 {
   std::uint32_t Key = glsl::NO_HIT;
-  float Depth = 0.0f;         ///< parameter t of the first hit
+  float Depth = 0.0f;         ///< parameter t of the first hit, without the flag of levels
   std::uint32_t Isovalue = 0; ///< index of the first hit's, among those that show
 };
 
@@ -30,7 +30,8 @@ public:
   {
   }
 
-  ///@{ Of all pixels of the image, rows from the bottom.
+  ///@{ Of all pixels of the image, rows from the bottom. Depths have the flags of levels: see
+  /// Hits.glsl.
   std::vector<std::uint32_t> ReadKeys();
   std::vector<float> ReadDepths();
   ///@}

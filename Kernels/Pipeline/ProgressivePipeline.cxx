@@ -606,6 +606,7 @@ void ProgressivePipeline::UpdateNeeds(const PipelineScene& scene)
   this->Isovalues.assign(view.Isovalues, view.Isovalues + view.NumberOfIsovalues);
   this->Needs.Detailed = this->Settings.Detailed;
   this->Needs.Lit = scene.Look.NumberOfLights > 0;
+  this->Needs.Conservative = this->Needs.Levels && scene.Conservative;
   this->Needs.Translucent = scene.Translucent;
   this->Needs.Obstructed = scene.Obstructed;
   this->Needs.Categories = this->Needs.Colored && scene.Categories;
@@ -733,8 +734,13 @@ void ProgressivePipeline::MarkBlocks()
   if (!std::equal(this->Isovalues.begin(), this->Isovalues.end(), this->MarkedIsovalues.begin(),
         this->MarkedIsovalues.end(), same))
   {
-    this->Gpu->Dispatch(Stage::MarkBlocks,
-      std::min(GroupsFor(Stage::MarkBlocks, this->Needs.Macrocells), MaximumResetGroups));
+    for (const LevelGrid& grid : this->Levels) // each looks at the marks of the one before
+    {
+      const std::int64_t count = grid.Size.GetNumberOfMacrocells();
+      this->Gpu->DispatchSlice(Stage::MarkBlocks,
+        std::min(GroupsFor(Stage::MarkBlocks, count), MaximumResetGroups),
+        { grid.FirstMacrocell, grid.FirstMacrocell + count }, {}, nullptr);
+    }
     if (InfoOf(Stage::MarkCells).IsNeeded(Moment::Isovalues, this->Needs))
     {
       this->Gpu->Dispatch(Stage::MarkCells, std::min(this->Needs.Macrocells, MaximumResetGroups));

@@ -54,7 +54,7 @@ std::vector<double> HitDepths(const ViewGeometry& view, const std::vector<std::u
   {
     const double last = HitDepth(depths, keys[pixel]);
     const bool isTranslucent = !firstParameters.empty() && std::isfinite(last);
-    found[pixel] = isTranslucent ? firstParameters[pixel] : last;
+    found[pixel] = isTranslucent ? std::fabs(firstParameters[pixel]) : last;
   }
   return found;
 }

@@ -71,6 +71,7 @@ struct ImageStatistics
   std::vector<std::pair<std::string, double>> Stages; ///< that ran, and their milliseconds
   std::vector<std::string> StagesLeftOut;
   std::vector<std::int64_t> LevelPixels; ///< hits in each level of detail
+  double UncertainFraction = 0.0;        ///< of the pixels: levels may hide something there
   bool Converged = false;
   std::string GLDescription;
 };

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Scene/LevelTranslation.h"
 
+#include "Scene/HitGeometry.h"
+
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 
@@ -113,4 +115,30 @@ int LevelAtDepth(const ViewGeometry& view, double depth)
     ++level;
   }
   return level;
+}
+
+// Flags: see LEVEL_FLAG in Hits.glsl.
+PixelsOfLevels CountLevels(const PipelineScene& scene, const std::vector<std::uint32_t>& keys,
+  const std::vector<float>& depths)
+{
+  const ViewGeometry& view = scene.View;
+  const bool flagged = view.NumberOfLevels > 1;
+  const std::vector<double> hits =
+    HitDepths(view, keys, scene.Translucent ? depths : std::vector<float>());
+  PixelsOfLevels counts;
+  counts.Pixels.assign(std::max(view.NumberOfLevels, 1), 0);
+  std::int64_t uncertain = 0;
+  for (std::size_t pixel = 0; pixel < keys.size(); ++pixel)
+  {
+    const bool isHit = keys[pixel] != glsl::NO_HIT;
+    const bool flag = flagged && std::signbit(depths[pixel]);
+    if (isHit)
+    {
+      ++counts.Pixels[scene.Conservative && flag ? 0 : LevelAtDepth(view, hits[pixel])];
+    }
+    uncertain += !scene.Conservative && flag && (isHit || depths[pixel] == 0.0f) ? 1 : 0;
+  }
+  counts.UncertainFraction =
+    static_cast<double>(uncertain) / static_cast<double>(std::max<std::size_t>(keys.size(), 1));
+  return counts;
 }

@@ -5,9 +5,10 @@
 #ifndef LevelTranslation_h
 #define LevelTranslation_h
 
-#include "Pipeline/ViewGeometry.h"
+#include "Pipeline/PipelineScene.h"
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 class vtkMatrix4x4;
@@ -25,5 +26,16 @@ void TranslateNoLevels(ViewGeometry& view);
 
 /// The level that is drawn at a depth; where two blend, the finer one.
 int LevelAtDepth(const ViewGeometry& view, double depth);
+
+struct PixelsOfLevels
+{
+  std::vector<std::int64_t> Pixels; ///< that show the surface in each level
+  double UncertainFraction = 0.0;   ///< of the image's pixels
+};
+
+/// Counts what pixels show, by their keys and depths as HitReadback reads them. Depths are empty of
+/// an opaque image without levels.
+PixelsOfLevels CountLevels(const PipelineScene& scene, const std::vector<std::uint32_t>& keys,
+  const std::vector<float>& depths);
 
 #endif

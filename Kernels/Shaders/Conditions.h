@@ -39,6 +39,8 @@ constexpr Condition FinishedHits = { "lit, translucent or colours",
   [](const E& e) { return e.Lit || e.Translucent || e.Colored; } };
 constexpr Condition SeveralPasses = { "cache or translucent",
   [](const E& e) { return !e.IsSinglePass(); } };
+constexpr Condition Straggling = { "cache or translucent, levels of detail not conservative",
+  [](const E& e) { return !e.IsSinglePass() && !e.Conservative; } };
 constexpr Condition Detailed = { "detailed statistics", [](const E& e) { return e.Detailed; } };
 }
 

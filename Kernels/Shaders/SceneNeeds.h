@@ -42,6 +42,7 @@ struct SceneFeatures
   bool Categories = false;   ///< colours are those of the nearest sample
   bool StoredRanges = false; ///< the ranges of blocks come with the volume
   bool Levels = false;       ///< of detail: there are coarser ones
+  bool Conservative = false; ///< where these show nothing that the volume may have, it is looked at
 
   /// The features, a bit each.
   std::uint32_t GetBits() const
@@ -49,7 +50,8 @@ struct SceneFeatures
     return this->Cached | this->Lit << 1 | this->Detailed << 2 | this->SeveralIsovalues << 3 |
       this->Translucent << 4 | this->Obstructed << 5 | this->Clipped << 6 | this->Cropped << 7 |
       this->Colored << 8 | this->HiddenCells << 9 | this->HiddenColors << 10 |
-      this->Categories << 11 | this->StoredRanges << 12 | this->Levels << 13;
+      this->Categories << 11 | this->StoredRanges << 12 | this->Levels << 13 |
+      this->Conservative << 14;
   }
   /// Do rays begin and end in one pass?
   bool IsSinglePass() const { return !this->Cached && !this->Translucent; }

@@ -1,5 +1,6 @@
 #include "Shared/Scene.glsl"
 #include "Rays/LevelSpans.glsl"
+#include "Rays/LevelStretches.glsl"
 #include "Rays/Rays.glsl"
 #include "Rays/TraverseGrid.glsl"
 
@@ -39,12 +40,17 @@ ivec3 ReachInNextLevel(ivec3 block, ivec3 reach)
 }
 
 // A block in which blending begins counts as a whole, from before: a ray that waits in the part
-// behind goes on in the part before, and asks for what it needs there.
+// behind goes on in the part before, and asks for what it needs there. So does one of the volume
+// itself that is looked at in parts, one for each coarser block.
 BlockNeeds NeedsOf(Ray ray, GridPlace place, BlockCrossing crossing)
 {
   BlockNeeds needs;
-  bool cut = !ray.Blends && !IsLess(crossing.Leave, BlendBegin(level));
-  if (cut)
+  bool cut = !ray.Blends && !ray.Finest && !IsLess(crossing.Leave, BlendBegin(level));
+  if (ray.Finest)
+  {
+    crossing.Enter = EntryOf(ray, place);
+  }
+  if (cut || ray.Finest)
   {
     crossing.Leave = SmallerOf(ray.End, SmallestOf(place.Exits));
   }

@@ -59,13 +59,22 @@ uint CastRay(uint pixel, bool isNew)
     place = ResumeRay(ray, BlockOfRay(pixel));
   }
   PassLastHit(pixel);
+#ifdef LEVELS
+  ray.Doubted = IsMissFlagged(pixel);
+#endif
   Hit hit;
   bool waits = FindHit(ray, place, hit);
   bool isHit = hit.Key != NO_HIT;
   if (isHit)
   {
-    StoreHit(pixel, hit, DepthAt(HitT(hit.Key)));
+    StoreHit(pixel, hit, FlaggedDepth(ray, hit));
   }
+#ifdef LEVELS
+  else if (IsFlagged(ray))
+  {
+    FlagMiss(pixel);
+  }
+#endif
   if (waits || (isHit && RAYS_CONTINUE))
   {
     StoreBlockOfRay(pixel, BlockIndex(place.Block));

@@ -20,11 +20,12 @@ shared uint firstHit;
 // Gives lane i the i-th active block from a place on, if there is one; false for the lanes behind
 // the last. The whole group walks together, and `inside` tells whether there may be more. `leaves`:
 // the first place has been taken.
-bool TakeBlock(Ray ray, inout bool leaves, inout GridPlace place, inout GridCursor at,
-  inout bool inside, out GridPlace taken)
+bool TakeBlock(inout Ray ray, inout bool leaves, inout GridPlace place, inout GridCursor at,
+  inout bool inside, out Ray taker, out GridPlace taken)
 {
   bool took = false;
   taken = place;
+  taker = ray;
   for (uint i = 0u; i < GROUP_SIZE && inside; ++i)
   {
     inside = FindActiveBlock(ray, leaves, place, at);
@@ -32,6 +33,7 @@ bool TakeBlock(Ray ray, inout bool leaves, inout GridPlace place, inout GridCurs
     if (inside && i == gl_LocalInvocationIndex)
     {
       taken = place;
+      taker = ray;
       took = true;
     }
   }
@@ -41,7 +43,7 @@ bool TakeBlock(Ray ray, inout bool leaves, inout GridPlace place, inout GridCurs
 // By the lane that has the hit.
 void KeepHit(Ray ray, uint pixel, ivec3 block, Hit hit)
 {
-  StoreHit(pixel, hit, DepthAt(HitT(hit.Key)));
+  StoreHit(pixel, hit, FlaggedDepth(ray, hit));
   if (RAYS_CONTINUE)
   {
     StoreBlockOfRay(pixel, BlockIndex(block));
@@ -51,39 +53,55 @@ void KeepHit(Ray ray, uint pixel, ivec3 block, Hit hit)
 #endif
 }
 
+// By one lane, for a ray that has no hit.
+void KeepFlag(Ray ray, uint pixel)
+{
+#ifdef LEVELS
+  if (IsFlagged(ray))
+  {
+    FlagMiss(pixel);
+  }
+#endif
+}
+
 // True if the ray has to go on in the next pass.
 bool CastRay(uint pixel)
 {
   uint lane = gl_LocalInvocationIndex;
   Ray ray = CameraRay(pixel);
   GridPlace next = ResumeRay(ray, BlockOfRay(pixel));
+#ifdef LEVELS
+  ray.Doubted = IsMissFlagged(pixel);
+#endif
   PassLastHit(pixel);
   GridCursor at = OutsideGrid();
   bool leaves = false;
   bool inside = true;
   while (inside)
   {
+    Ray taker; // as it was at the block: what it has passed since does not count
     GridPlace place;
-    bool took = TakeBlock(ray, leaves, next, at, inside, place);
-    BlockVisit visit = PlanVisit(ray, place);
+    bool took = TakeBlock(ray, leaves, next, at, inside, taker, place);
+    BlockVisit visit = PlanVisit(taker, place);
     if (took && LacksBlocks(place.Block, visit))
     {
       atomicMin(firstMissing, lane);
     }
     barrier();
     Hit hit = MISS;
-    if (took && lane < firstMissing && VisitBlock(ray, place, visit, hit))
+    if (took && lane < firstMissing && VisitBlock(taker, place, visit, hit))
     {
       atomicMin(firstHit, lane);
     }
     barrier();
     if (firstHit == lane)
     {
-      KeepHit(ray, pixel, place.Block, hit);
+      KeepHit(taker, pixel, place.Block, hit);
     }
     else if (firstHit == GROUP_SIZE && firstMissing == lane)
     {
       StoreBlockOfRay(pixel, BlockIndex(place.Block));
+      KeepFlag(taker, pixel);
     }
     if (firstHit < GROUP_SIZE || firstMissing < GROUP_SIZE)
     {
@@ -95,6 +113,10 @@ bool CastRay(uint pixel)
       inside = EnterNextStretch(ray, next, at);
       leaves = false;
     }
+  }
+  if (lane == 0u)
+  {
+    KeepFlag(ray, pixel);
   }
   return false;
 }

@@ -49,36 +49,134 @@ void EnterNextLevel(inout Ray ray)
   ++level;
 }
 
-// Where a new ray enters the volume, in the level of that depth.
-GridPlace BeginRay(inout Ray ray)
+#ifdef CONSERVATIVE
+Ray finest; // the ray in the volume itself
+#endif
+
+// A ray as CameraRay makes it, before it has a stretch.
+void OpenRay(inout Ray ray)
 {
   level = 0;
   ray.End = ray.Leave;
-  while (!IsLess(ray.Enter, LevelEnd(level)))
+  ray.Blends = false;
+  ray.Doubted = false;
+  ray.Finest = false;
+#ifdef CONSERVATIVE
+  finest = ray;
+#endif
+}
+
+// Goes on, from the volume itself, to the level that is drawn at a parameter.
+void EnterStretchAt(Wide t, inout Ray ray)
+{
+  while (!IsLess(t, LevelEnd(level)))
   {
     EnterNextLevel(ray);
   }
-  ray.Blends = !IsLess(ray.Enter, BlendBegin(level));
+  ray.Blends = !IsLess(t, BlendBegin(level));
   TakeStretch(ray);
+}
+
+// Where a new ray enters the volume, in the level of that depth.
+GridPlace BeginRay(inout Ray ray)
+{
+  OpenRay(ray);
+  EnterStretchAt(ray.Enter, ray);
   GridPlace place = PlaceIn(ray, BlockOf(ray.FirstCell));
   EnterGrid(ray, place);
   return place;
 }
 
+Wide EntryOf(Ray ray, GridPlace place)
+{
+  return LargerOf(ray.Enter, LargestOf(Difference(place.Exits, BlockSpacing(ray))));
+}
+
+#ifdef CONSERVATIVE
+// Limits a ray in the volume itself to its way through a coarser block.
+void LookWithin(BlockCrossing crossing, inout Ray ray)
+{
+  ray.Finest = true;
+  ray.From = crossing.Enter;
+  ray.Leave = crossing.Leave;
+}
+
+// The block of the volume itself in which the ray is at parameter t. Floats tell it to a plane, at
+// worst two, and the planes' own parameters which it is.
+GridPlace FinestPlaceAt(Wide t)
+{
+  Wide3 next = PlanesT(finest, finest.FirstCell + (1 + finest.Step) / 2);
+  vec3 planes = floor(ToFloat(Difference(AllOf(t), next)) / ToFloat(finest.Spacing)) + 1.0;
+  ivec3 cell = finest.FirstCell + finest.Step * ivec3(max(planes, 0.0));
+  GridPlace place = PlaceIn(finest, BlockOf(cell));
+  Wide3 spacing = BlockSpacing(finest);
+  ivec3 back = ~AreReached(Difference(place.Exits, spacing), t) &
+    ~AreReached(Difference(place.Exits, spacing), finest.Enter);
+  place.Block -= finest.Step & back;
+  place.Exits = Difference(place.Exits, Masked(spacing, back));
+  CrossPlanes(finest.Step, spacing, AreReached(place.Exits, t), place.Block, place.Exits);
+  return place;
+}
+
+// Looks at the volume itself where the ray passes a coarser block without a hit.
+void Descend(inout Ray ray, inout GridPlace place, inout GridCursor at)
+{
+  BlockCrossing crossing = CrossBlock(ray, place);
+  ray = finest;
+  level = 0;
+  LookWithin(crossing, ray);
+  place = FinestPlaceAt(ray.From);
+  at = OutsideGrid();
+}
+
+// Goes back from there, or ends.
+bool Ascend(inout Ray ray, inout GridPlace place, inout GridCursor at)
+{
+  Wide t = ray.Leave;
+  if (!IsLess(t, ray.End) || !InGrid(place.Block))
+  {
+    return false;
+  }
+  ivec3 block = place.Block;
+  ray = finest;
+  EnterStretchAt(t, ray);
+  place = PlaceIn(ray, block >> Halvings());
+  at = OutsideGrid();
+  return true;
+}
+
+// The way within which a ray looks at a block of the volume itself.
+BlockCrossing CoarserCrossing(ivec3 block, Wide entry)
+{
+  Ray ray = finest;
+  EnterStretchAt(entry, ray);
+  BlockCrossing crossing = CrossBlock(ray, PlaceIn(ray, block >> Halvings()));
+  level = 0;
+  return crossing;
+}
+#endif
+
 // A ray goes on in a block: where this blends only in part, in the part before.
 GridPlace ResumeRay(inout Ray ray, uint block)
 {
+  OpenRay(ray);
   EnterLevelOf(block);
   int last = level;
   level = 0;
-  ray.End = ray.Leave;
   while (level < last)
   {
     EnterNextLevel(ray);
   }
   GridPlace place = PlaceIn(ray, BlockCoordinates(block));
-  Wide entry = LargestOf(Difference(place.Exits, BlockSpacing(ray)));
-  ray.Blends = !IsLess(LargerOf(ray.Enter, entry), BlendBegin(level));
+  Wide entry = EntryOf(ray, place);
+#ifdef CONSERVATIVE
+  if (!IsLess(entry, LevelEnd(level)))
+  {
+    LookWithin(CoarserCrossing(place.Block, entry), ray);
+    return place;
+  }
+#endif
+  ray.Blends = !IsLess(entry, BlendBegin(level));
   TakeStretch(ray);
   return place;
 }
@@ -86,6 +184,12 @@ GridPlace ResumeRay(inout Ray ray, uint block)
 // Begins the next stretch, from the block where the last has ended. False if the ray has ended.
 bool EnterNextStretch(inout Ray ray, inout GridPlace place, inout GridCursor at)
 {
+#ifdef CONSERVATIVE
+  if (ray.Finest)
+  {
+    return Ascend(ray, place, at);
+  }
+#endif
   while (IsLess(ray.Leave, ray.End) && InGrid(place.Block))
   {
     if (ray.Blends)
@@ -101,6 +205,32 @@ bool EnterNextStretch(inout Ray ray, inout GridPlace place, inout GridCursor at)
       at = OutsideGrid();
       return true;
     }
+  }
+  return false;
+}
+
+// Walks to the next active block, as FindActiveBlock does, through all stretches.
+bool FindNextBlock(inout Ray ray, bool leaves, inout GridPlace place, inout GridCursor at)
+{
+  bool goesOn = true;
+  while (goesOn)
+  {
+#ifdef CONSERVATIVE
+    ray.Doubted = false;
+#endif
+    if (FindActiveBlock(ray, leaves, place, at))
+    {
+      return true;
+    }
+    leaves = false;
+#ifdef CONSERVATIVE
+    if (ray.Doubted)
+    {
+      Descend(ray, place, at);
+      continue;
+    }
+#endif
+    goesOn = EnterNextStretch(ray, place, at);
   }
   return false;
 }
@@ -121,22 +251,8 @@ bool EnterNextStretch(Ray ray, GridPlace place, GridCursor at)
 {
   return false;
 }
-#endif
 
-// Walks to the next active block, as FindActiveBlock does, through all stretches.
-#ifdef LEVELS
 bool FindNextBlock(inout Ray ray, bool leaves, inout GridPlace place, inout GridCursor at)
-{
-  bool found;
-  do
-  {
-    found = FindActiveBlock(ray, leaves, place, at);
-    leaves = false;
-  } while (!found && EnterNextStretch(ray, place, at));
-  return found;
-}
-#else
-bool FindNextBlock(Ray ray, bool leaves, inout GridPlace place, inout GridCursor at)
 {
   return FindActiveBlock(ray, leaves, place, at);
 }

@@ -1,11 +1,14 @@
 // Marks the active blocks, for the isovalues of the scene: those whose range of values holds one.
 // Rays then read two words a macrocell, whatever there is to compare. A lane takes a macrocell; of
-// most it reads no more than the macrocell's own range.
+// most it reads no more than the macrocell's own range. With levels of detail it marks, beside the
+// blocks of a level, those of its blend with the next, and those that stand for samples of the
+// volume between which the surface is: levels are marked one after the other, the finest first.
 
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"
 #include "Shared/Grid.glsl"
 #include "Rays/BlockRange.glsl"
+#include "Store/VolumeSlice.glsl"
 
 bool StraddlesAnyIsovalue(float low, float high)
 {
@@ -84,22 +87,56 @@ uvec2 BlendMarks(uint macrocell)
 }
 #endif
 
+#ifdef LEVELS
+// The blocks for which one of the volume's own samples that they stand for may be on the other side:
+// those of the level before, from the volume itself on, whose marks are there already.
+uvec2 OriginalMarks(uint macrocell)
+{
+  uvec2 marks = uvec2(0u);
+  ivec3 place = MacrocellCoordinates(macrocell);
+  --level;
+  ivec3 halved = HalvedByNext();
+  for (int i = 0; i < BLOCKS_PER_MACROCELL; ++i)
+  {
+    ivec3 first = MACROCELL_SIDE * place + BlockInMacrocell(uint(i)) << halved;
+    bool marked = false;
+    for (int side = 0; side < 8; ++side)
+    {
+      ivec3 block = first + (SideOffset(side) & halved);
+      if (InGrid(block))
+      {
+        uint local = LocalIndex(block);
+        uvec2 finer = blockMarks[MarksIndex(MacrocellIndex(MacrocellOf(block)), ORIGINAL_MARKS)];
+        marked = marked || ((local < 32u ? finer.x : finer.y) >> (local & 31u) & 1u) != 0u;
+      }
+    }
+    uint bit = marked ? 1u << (i & 31) : 0u;
+    marks |= i < 32 ? uvec2(bit, 0u) : uvec2(0u, bit);
+  }
+  ++level;
+  return marks;
+}
+
 void StoreMarks(uint macrocell, uvec2 marks)
 {
-#ifdef LEVELS
   EnterLevelOfMacrocell(macrocell);
-  blockMarks[2u * macrocell] = marks;
-  blockMarks[2u * macrocell + 1u] = BlendMarks(macrocell);
-#else
-  blockMarks[macrocell] = marks;
-#endif
+  blockMarks[MarksIndex(macrocell, LEVEL_MARKS)] = marks;
+  blockMarks[MarksIndex(macrocell, BLEND_MARKS)] = BlendMarks(macrocell);
+  blockMarks[MarksIndex(macrocell, ORIGINAL_MARKS)] =
+    level == 0 ? marks : OriginalMarks(macrocell);
 }
+#else
+void StoreMarks(uint macrocell, uvec2 marks)
+{
+  blockMarks[macrocell] = marks;
+}
+#endif
 
 void main()
 {
-  uint first = GROUP_SIZE * FoldedGroup() + gl_LocalInvocationIndex;
+  uint first = slice.x + GROUP_SIZE * FoldedGroup() + gl_LocalInvocationIndex;
   uint stride = GROUP_SIZE * gl_NumWorkGroups.x * gl_NumWorkGroups.y;
-  for (uint macrocell = first; macrocell < volume.NumberOfMacrocells; macrocell += stride)
+  for (uint macrocell = first; macrocell < slice.y; macrocell += stride)
   {
     vec2 range = vec2(macrocells[macrocell].Low, macrocells[macrocell].High);
     uvec2 marks = uvec2(0u);

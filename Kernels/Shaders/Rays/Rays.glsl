@@ -27,9 +27,11 @@ struct Ray
 #ifdef LEVELS
   // All but Enter are those of a level of detail, of which the ray has a stretch: see
   // LevelStretches.glsl.
-  Wide From;   // parameter where the stretch begins; it ends at Leave
-  Wide End;    // where the ray leaves what is drawn
-  bool Blends; // with the next level
+  Wide From;    // parameter where the stretch begins; it ends at Leave
+  Wide End;     // where the ray leaves what is drawn
+  bool Blends;  // with the next level
+  bool Doubted; // has passed a block where the volume itself may have a surface
+  bool Finest;  // looks at the volume itself, within a block of a coarser level
 #endif
 };
 

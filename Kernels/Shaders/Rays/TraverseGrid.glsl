@@ -143,24 +143,44 @@ struct GridCursor
 {
   ivec3 Macrocell;
   uvec2 Marks;
+#ifdef LEVELS
+  uvec2 Original; // likewise of the volume's own samples, where a coarser level is drawn
+#endif
 };
 
 GridCursor OutsideGrid()
 {
-  return GridCursor(ivec3(-1), uvec2(0u));
-}
-
-uvec2 MarksOf(Ray ray, ivec3 macrocell)
-{
+  GridCursor at;
+  at.Macrocell = ivec3(-1);
+  at.Marks = uvec2(0u);
 #ifdef LEVELS
-  return blockMarks[2u * MacrocellIndex(macrocell) + (ray.Blends ? 1u : 0u)];
-#else
-  return blockMarks[MacrocellIndex(macrocell)];
+  at.Original = uvec2(0u);
 #endif
+  return at;
 }
 
-// Tells whether a block of the cursor's macrocell may hold a surface that is drawn.
-bool IsBlockActive(GridCursor at, ivec3 block)
+GridCursor CursorAt(Ray ray, ivec3 macrocell)
+{
+  GridCursor at;
+  at.Macrocell = macrocell;
+  uint index = MacrocellIndex(macrocell);
+#ifdef LEVELS
+  at.Marks = blockMarks[MarksIndex(index, ray.Blends ? BLEND_MARKS : LEVEL_MARKS)];
+  at.Original = level > 0 || ray.Blends ? blockMarks[MarksIndex(index, ORIGINAL_MARKS)] : uvec2(0u);
+#else
+  at.Marks = blockMarks[index];
+#endif
+  return at;
+}
+
+bool IsMarked(uvec2 marks, ivec3 block)
+{
+  uint local = LocalIndex(block);
+  return ((local < 32u ? marks.x : marks.y) >> (local & 31u) & 1u) != 0u;
+}
+
+// Tells whether a block may hold a surface that is drawn, by marks of its macrocell.
+bool IsBlockActive(uvec2 marks, ivec3 block)
 {
 #ifdef CROPPED
   if (IsCroppedAway(block))
@@ -168,14 +188,24 @@ bool IsBlockActive(GridCursor at, ivec3 block)
     return false;
   }
 #endif
-  uint local = LocalIndex(block);
-  return ((local < 32u ? at.Marks.x : at.Marks.y) >> (local & 31u) & 1u) != 0u;
+  return IsMarked(marks, block);
+}
+
+// Tells whether rays skip all of the macrocell.
+bool IsSkipped(GridCursor at)
+{
+#ifdef LEVELS
+  return (at.Marks | at.Original) == uvec2(0u);
+#else
+  return at.Marks == uvec2(0u);
+#endif
 }
 
 // Walks to the next active block. `leaves`: the one where the ray is does not count. False if the
-// ray leaves the volume, or its stretch in a level of detail ends, before. Lanes that skip a macrocell and those that go to the next block
-// make the last step together.
-bool FindActiveBlock(Ray ray, bool leaves, inout GridPlace place, inout GridCursor at)
+// ray leaves the volume, or its stretch in a level of detail ends, before; or if it passes a block
+// where the volume itself may have a surface, and is to look at that. Lanes that skip a macrocell
+// and those that go to the next block make the last step together.
+bool FindActiveBlock(inout Ray ray, bool leaves, inout GridPlace place, inout GridCursor at)
 {
   bool inside = true;
   while (inside)
@@ -183,13 +213,22 @@ bool FindActiveBlock(Ray ray, bool leaves, inout GridPlace place, inout GridCurs
     ivec3 macrocell = MacrocellOf(place.Block);
     if (macrocell != at.Macrocell)
     {
-      at = GridCursor(macrocell, MarksOf(ray, macrocell));
+      at = CursorAt(ray, macrocell);
     }
-    bool skips = at.Marks == uvec2(0u);
-    if (!skips && !leaves && IsBlockActive(at, place.Block))
+    bool skips = IsSkipped(at);
+    if (!skips && !leaves && IsBlockActive(at.Marks, place.Block))
     {
       return true;
     }
+#ifdef LEVELS
+    if (!skips && IsBlockActive(at.Original, place.Block))
+    {
+      ray.Doubted = true;
+#ifdef CONSERVATIVE
+      return false;
+#endif
+    }
+#endif
     leaves = false;
     Wide t = SmallestOf(ExitsBehind(ray, place, skips ? MACROCELL_SIDE - 1 : 0));
 #ifdef LEVELS

@@ -54,3 +54,25 @@ bool VisitBlock(Ray ray, GridPlace place, BlockVisit visit, out Hit hit)
   ++pairs;
   return IntersectBlock(ray, place, visit.Crossing, hit);
 }
+
+#ifdef LEVELS
+// See LEVEL_FLAG in Hits.glsl.
+bool IsFlagged(Ray ray)
+{
+#ifdef CONSERVATIVE
+  return ray.Finest;
+#else
+  return ray.Doubted;
+#endif
+}
+#endif
+
+// The depth of a hit, with the flag of levels.
+float FlaggedDepth(Ray ray, Hit hit)
+{
+  float depth = DepthAt(HitT(hit.Key));
+#ifdef LEVELS
+  depth = IsFlagged(ray) ? -depth : depth;
+#endif
+  return depth;
+}

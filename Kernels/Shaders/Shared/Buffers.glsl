@@ -20,8 +20,7 @@ BUFFER_STREAM StreamBuffer { uint stream[]; };
 BUFFER_MACROCELLS Macrocells { Macrocell macrocells[]; };
 #endif
 #ifdef BUFFER_BLOCK_MARKS
-// Of each macrocell; with levels of detail two: of a level alone, and with the next. See
-// MarkBlocks.comp.
+// Of each macrocell; with levels of detail three: see MarkBlocks.comp.
 BUFFER_BLOCK_MARKS BlockMarks { uvec2 blockMarks[]; };
 #endif
 #ifdef BUFFER_HIDDEN_CELLS

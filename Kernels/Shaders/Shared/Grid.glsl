@@ -36,6 +36,16 @@ void EnterLevelOfMacrocell(uint macrocell)
   }
 }
 
+// What a macrocell's marks are about, where levels have three: see MarkBlocks.comp.
+const uint LEVEL_MARKS = 0u;
+const uint BLEND_MARKS = 1u;
+const uint ORIGINAL_MARKS = 2u;
+
+uint MarksIndex(uint macrocell, uint kind)
+{
+  return 3u * macrocell + kind;
+}
+
 // How often the axes have every second sample of the volume itself.
 ivec3 Halvings()
 {

@@ -68,11 +68,20 @@ float BlendColors(float a, float b, float weight)
 }
 #endif
 
-// Of the level of the hit's depth, or the two that blend there.
-bool SampleLevels(RayLine line, uint key, out Surface surface)
+// Of the level of a pixel's hit, or the two that blend there.
+bool SampleLevels(uint pixel, out Surface surface)
 {
+  RayLine line = LineOf(pixel);
+  uint key = HitKeyOf(pixel);
   bool waits = false;
   float weight = EnterLevelAt(HitT(key));
+#ifdef CONSERVATIVE
+  if (HasLevelFlag(pixel))
+  {
+    level = 0;
+    weight = 0.0;
+  }
+#endif
   int first = level;
   int last = level + (weight > 0.0 ? 1 : 0);
   for (; level <= last; ++level)
@@ -97,7 +106,7 @@ bool FindNormal(uint pixel, out vec3 normal)
 {
   Surface surface;
 #ifdef LEVELS
-  bool waits = SampleLevels(LineOf(pixel), HitKeyOf(pixel), surface);
+  bool waits = SampleLevels(pixel, surface);
 #else
   bool waits = SampleSurface(LineOf(pixel), HitKeyOf(pixel), surface);
 #endif

@@ -1,6 +1,7 @@
 // What the rays of pixels have met. The buffer has a section of a word a pixel for each of:
 // - the hit's key,
-// - its depth along the view direction; in a translucent image that of the first hit,
+// - its depth along the view direction; in a translucent image that of the first hit. With levels of
+//   detail its sign bit tells of that hit, or of a miss: see LEVEL_FLAG,
 // - with several isovalues the number of the hit's, and in the upper half that of the first hit's,
 // - with another volume for the colours its value at the hit,
 // - in a translucent image the window's depth where opaque geometry may hide the surface.
@@ -20,6 +21,13 @@ uint ImagePixels()
 {
   return uint(view.ImageSize.x * view.ImageSize.y);
 }
+
+#ifdef LEVELS
+// The sign bit of a depth. Of a conservative image: the hit is on the volume itself, whatever level
+// is drawn at its depth. Of another: the volume itself may have a surface before it that the levels
+// do not show. A miss has nothing but this bit then.
+const uint LEVEL_FLAG = 0x80000000u;
+#endif
 
 #ifdef BUFFER_HITS
 uint HitWord(uint section, uint pixel)
@@ -43,8 +51,25 @@ Hit HitOf(uint pixel)
 
 float DepthOf(uint pixel)
 {
+#ifdef LEVELS
+  return abs(uintBitsToFloat(hits[HitWord(DEPTH_SECTION, pixel)]));
+#else
   return uintBitsToFloat(hits[HitWord(DEPTH_SECTION, pixel)]);
+#endif
 }
+
+#ifdef LEVELS
+bool HasLevelFlag(uint pixel)
+{
+  return (hits[HitWord(DEPTH_SECTION, pixel)] & LEVEL_FLAG) != 0u;
+}
+
+// Has the ray of a pixel without a hit been marked?
+bool IsMissFlagged(uint pixel)
+{
+  return HitKeyOf(pixel) == NO_HIT && hits[HitWord(DEPTH_SECTION, pixel)] == LEVEL_FLAG;
+}
+#endif
 
 float ObstacleOf(uint pixel)
 {
@@ -67,6 +92,18 @@ void StoreColorValue(uint pixel, float value)
 }
 #endif
 
+#ifdef LEVELS
+// Marks the ray of a pixel that has no hit yet.
+void FlagMiss(uint pixel)
+{
+  if (HitKeyOf(pixel) == NO_HIT)
+  {
+    hits[HitWord(DEPTH_SECTION, pixel)] = LEVEL_FLAG;
+  }
+}
+#endif
+
+// A negative depth has the flag of levels.
 void StoreHit(uint pixel, Hit hit, float depth)
 {
 #ifdef TRANSLUCENT
