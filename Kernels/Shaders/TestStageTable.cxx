@@ -47,9 +47,25 @@ SceneNeeds WithCategories(SceneNeeds needs)
   return needs;
 }
 
+// With ranges, as levels of detail have them.
+SceneNeeds WithLevels(SceneNeeds needs, bool conservative)
+{
+  needs.StoredRanges = needs.Levels = true;
+  needs.Conservative = conservative;
+  return needs;
+}
+
 std::vector<SceneNeeds> Scenes()
 {
   std::vector<SceneNeeds> scenes;
+  const SceneNeeds cached = SmallScene(true);
+  for (const bool conservative : { false, true })
+  {
+    for (const SceneNeeds& needs : { cached, WithAllFeatures(cached), Translucent(cached) })
+    {
+      scenes.push_back(WithLevels(needs, conservative));
+    }
+  }
   for (const bool cached : { true, false })
   {
     const SceneNeeds plain = SmallScene(cached);

@@ -40,19 +40,20 @@ ivec3 ReachInNextLevel(ivec3 block, ivec3 reach)
 }
 
 // A block in which blending begins counts as a whole, from before: a ray that waits in the part
-// behind goes on in the part before, and asks for what it needs there. So does one of the volume
-// itself that is looked at in parts, one for each coarser block.
+// behind goes on in the part before, and asks for what it needs there. So does any block of the
+// volume itself at which rays may look again, in parts, one for each coarser block.
 BlockNeeds NeedsOf(Ray ray, GridPlace place, BlockCrossing crossing)
 {
   BlockNeeds needs;
   bool cut = !ray.Blends && !ray.Finest && !IsLess(crossing.Leave, BlendBegin(level));
-  if (ray.Finest)
+#ifdef CONSERVATIVE
+  bool whole = cut || level == 0;
+#else
+  bool whole = cut;
+#endif
+  if (whole)
   {
-    crossing.Enter = EntryOf(ray, place);
-  }
-  if (cut || ray.Finest)
-  {
-    crossing.Leave = SmallerOf(ray.End, SmallestOf(place.Exits));
+    crossing = BlockCrossing(EntryOf(ray, place), SmallerOf(ray.End, SmallestOf(place.Exits)));
   }
   needs.Reach = DualGridReach(ray, place, crossing);
   needs.NeedsNext = cut || ray.Blends;
