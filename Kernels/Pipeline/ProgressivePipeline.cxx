@@ -524,13 +524,16 @@ void ProgressivePipeline::UploadCacheBlock()
 
 std::uint32_t ProgressivePipeline::ChoosePixelsPerStraggler()
 {
+  if (!InfoOf(Stage::CastStragglers).IsNeeded(Moment::Pass, this->Needs))
+  {
+    return 0;
+  }
   if (this->Settings.PixelsPerStraggler >= 0)
   {
     return static_cast<std::uint32_t>(this->Settings.PixelsPerStraggler);
   }
   // a software renderer has no lanes to keep busy, and its work groups cost much
-  const bool wanted = !this->Gpu->Gl.GetLimits().Software &&
-    InfoOf(Stage::CastStragglers).IsNeeded(Moment::Pass, this->Needs);
+  const bool wanted = !this->Gpu->Gl.GetLimits().Software;
   // a large program, whose compilation would delay the first picture
   return wanted && this->Shown && this->Gpu->IsReady(Stage::CastStragglers) ? PixelsPerStraggler
                                                                             : 0;

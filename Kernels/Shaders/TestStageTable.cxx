@@ -224,7 +224,8 @@ TEST(StageTable, OneStageDecodesTheVolume)
       const bool decodes = std::count(bound.begin(), bound.end(), Buffer::Stream) > 0;
       EXPECT_EQ(decodes, stage.Id == Stage::DecodeBlocks) << stage.Name;
     }
-    EXPECT_TRUE(InfoOf(Stage::DecodeBlocks).IsNeeded(Moment::Volume, needs));
+    EXPECT_EQ(InfoOf(Stage::DecodeBlocks).IsNeeded(Moment::Volume, needs),
+      !needs.Cached || !needs.StoredRanges);
   }
 }
 
