@@ -205,7 +205,7 @@ public:
    * - LevelOfDetailOff (default): the image is exact.
    * - LevelOfDetailOn: each part is drawn from the coarsest level whose samples are, as the camera
    *   sees them, no more than PixelTolerance pixels apart along any axis. A level goes over to the
-   *   next in the last sixth of its depths, where their values are blended, so that nothing jumps
+   *   next in the last third of its depths, where their values are blended, so that nothing jumps
    *   when the camera moves. Memory and time follow the pixels, not the samples of the volume.
    * - LevelOfDetailInteractive: on while the window asks for a frame rate of 1 per second or more
    *   (vtkRenderWindow::SetDesiredUpdateRate(), which interactor styles set while the camera
@@ -234,7 +234,8 @@ public:
 
   ///@{
   /**
-   * How many pixels the samples of a level of detail may be apart, 1/16 … 64. Default 1.
+   * How many pixels the samples of a level of detail may be apart, 1/16 … 64. Pixels are those that
+   * have a ray each: with an ImageReductionFactor coarser levels are fine enough. Default 1.
    */
   vtkSetClampMacro(PixelTolerance, double, 0.0625, 64.0);
   vtkGetMacro(PixelTolerance, double);
