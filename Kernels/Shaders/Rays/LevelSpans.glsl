@@ -24,11 +24,17 @@ float WeightAt(Wide t)
   return view.Levels[level].FirstWeight * (1.0 - share) + view.Levels[level].LastWeight * share;
 }
 
+// Does a level end before a parameter? The last does not.
+bool HasLevelEnded(Wide t)
+{
+  return level + 1 < view.NumberOfLevels && !IsLess(t, LevelEnd(level));
+}
+
 // Chooses the level at a parameter. Returns the weight of the next.
 float EnterLevelAt(Wide t)
 {
   level = 0;
-  while (!IsLess(t, LevelEnd(level)))
+  while (HasLevelEnded(t))
   {
     ++level;
   }

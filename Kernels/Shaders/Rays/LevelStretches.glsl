@@ -69,7 +69,7 @@ void OpenRay(inout Ray ray)
 // Goes on, from the volume itself, to the level that is drawn at a parameter.
 void EnterStretchAt(Wide t, inout Ray ray)
 {
-  while (!IsLess(t, LevelEnd(level)))
+  while (HasLevelEnded(t))
   {
     EnterNextLevel(ray);
   }
