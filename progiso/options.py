@@ -39,7 +39,7 @@ class CompressionOptions:
 MAX_LEVELS = 11
 
 #: Whether coarser copies draw far parts of a surface; the order is that of the mapper's values.
-LEVELS_OF_DETAIL = ("off", "on", "interactive")
+LEVELS_OF_DETAIL = ("off", "on", "interactive", "conservative")
 
 #: Bits per sample of what is not labels, where nothing else is asked for.
 DEFAULT_RATE = 8.0
@@ -126,7 +126,7 @@ def checked_level_of_detail(level_of_detail: str) -> int:
     Raises
     ------
     ValueError
-        When it is neither off, on nor interactive.
+        When it is not one of `LEVELS_OF_DETAIL`.
 
     Examples
     --------
@@ -135,7 +135,8 @@ def checked_level_of_detail(level_of_detail: str) -> int:
     """
     if level_of_detail not in LEVELS_OF_DETAIL:
         raise ValueError(
-            f"level_of_detail must be 'off', 'on' or 'interactive', got {level_of_detail!r:.60}"
+            "level_of_detail must be 'off', 'on', 'interactive' or 'conservative', got "
+            f"{level_of_detail!r:.60}"
         )
     return LEVELS_OF_DETAIL.index(level_of_detail)
 

@@ -69,6 +69,10 @@ def statistics(
             {level: pixels}: for how many pixels the nearest surface is drawn from which level of
             detail, 0 being the volume itself; where two blend, it counts for the finer one. In
             JSON, where keys are strings, ``{"0": 9000, "1": 200}``.
+        ``uncertain``
+            Fraction of the pixels where levels of detail may hide something: their rays have
+            passed coarser samples without a hit where the volume's own are on both sides of the
+            isovalue.
         ``converged``
             Whether the image is complete.
         ``gl``
@@ -102,6 +106,7 @@ def statistics(
         "left_out": [source.GetStageLeftOut(i) for i in range(source.GetNumberOfStagesLeftOut())],
         "stage_ms": _stage_milliseconds(source) if mapper.GetDetailedStatistics() else {},
         "levels": {i: source.GetLevelPixels(i) for i in range(source.GetNumberOfLevels())},
+        "uncertain": source.GetUncertainFraction(),
         "converged": bool(source.GetConverged()),
         "gl": source.GetGLDescription(),
     }

@@ -115,12 +115,12 @@ WRONG = {
     "level of detail": (
         {"level_of_detail": "high"},
         ValueError,
-        "level_of_detail must be 'off', 'on' or 'interactive', got 'high'",
+        "level_of_detail must be 'off', 'on', 'interactive' or 'conservative', got 'high'",
     ),
     "level of detail's kind": (
         {"level_of_detail": True},
         ValueError,
-        "level_of_detail must be 'off', 'on' or 'interactive', got True",
+        "level_of_detail must be 'off', 'on', 'interactive' or 'conservative', got True",
     ),
     "pixel tolerance": (
         {"pixel_tolerance": 0},

@@ -57,7 +57,8 @@ def test_options_reach_the_mapper(volume):
     mapper = progiso.make_isosurface(volume, ISOVALUE).GetMapper()
     assert mapper.GetLevelOfDetail() == mapper.LevelOfDetailOff and mapper.GetPixelTolerance() == 1
     for name, expected in (("on", mapper.LevelOfDetailOn), ("off", mapper.LevelOfDetailOff),
-                           ("interactive", mapper.LevelOfDetailInteractive)):  # fmt: skip
+                           ("interactive", mapper.LevelOfDetailInteractive),
+                           ("conservative", mapper.LevelOfDetailConservative)):  # fmt: skip
         prop = progiso.make_isosurface(volume, ISOVALUE, level_of_detail=name, pixel_tolerance=2.5)
         assert prop.GetMapper().GetLevelOfDetail() == expected
         assert prop.GetMapper().GetPixelTolerance() == 2.5
@@ -75,7 +76,7 @@ def test_tolerances_within_the_mappers(volume, tolerance):
 
 def test_a_wrong_level_is_told_before_anything_is_compressed(plain, camera):
     told = []
-    with pytest.raises(ValueError, match="level_of_detail must be 'off', 'on' or 'interactive'"):
+    with pytest.raises(ValueError, match="level_of_detail must be 'off', 'on', 'interactive' or 'conservative'"):
         rendered(plain, camera, level_of_detail="fine", progress=told.append)
     assert not told
 

@@ -36,6 +36,7 @@ def test_keys(scene):
             "left_out",
             "stage_ms",
             "levels",
+            "uncertain",
             "converged",
             "camera",
             "size",
