@@ -95,8 +95,8 @@ struct vtkProgressiveIsosurfaceMapper::Internals
   InputArrays Inputs;
   BoundWindow Window; ///< the pipeline's
   ProgressivePipeline Pipeline;
-  vtkTimeStamp HandOverTime; ///< of the inputs to the pipeline
-  int HandedLevels = 0;      ///< of detail, beside the volume itself
+  vtkTimeStamp HandOverTime;   ///< of the inputs to the pipeline
+  int HandedLevels = 0;        ///< of detail, beside the volume itself
   vtkMTimeType LevelsTime = 0; ///< the inputs' whose lack of levels has been told
   PaletteCache Palettes;
   ViewState View;
@@ -410,8 +410,7 @@ ArrayChoice vtkProgressiveIsosurfaceMapper::MakeArrayChoice()
   choice.Rate = this->Rate;
   choice.MaskNonFinite = this->MaskNonFinite;
   choice.KeepLabels = this->KeepLabels;
-  choice.Levels =
-    this->LevelOfDetail == LevelOfDetailOff ? 0 : +vtkCompressedVolume::MaximumLevels;
+  choice.Levels = this->LevelOfDetail == LevelOfDetailOff ? 0 : +vtkCompressedVolume::MaximumLevels;
   return choice;
 }
 

@@ -178,14 +178,14 @@ void FixSpan(const LevelSpan& span, const DrawnDepths& depths, glsl::LevelSpan& 
   const Exact first = ParameterOf(span.BlendFrom, depths);
   const Exact last = ParameterOf(span.Until, depths);
   const Exact end = std::ldexp(Exact(1), glsl::WAY_BITS);
-  const auto firstBits = static_cast<std::int64_t>(first), lastBits = static_cast<std::int64_t>(last);
+  const auto firstBits = static_cast<std::int64_t>(first),
+             lastBits = static_cast<std::int64_t>(last);
   block.BlendHigh = static_cast<std::int32_t>(firstBits >> 32);
   block.BlendLow = static_cast<std::uint32_t>(firstBits);
   block.UntilHigh = static_cast<std::int32_t>(lastBits >> 32);
   block.UntilLow = static_cast<std::uint32_t>(lastBits);
   const bool begins = first > 0 && first <= end, ends = last > 0 && last <= end;
-  block.FirstWeight =
-    begins ? static_cast<float>(span.FirstWeight) : WeightAt(first, span, depths);
+  block.FirstWeight = begins ? static_cast<float>(span.FirstWeight) : WeightAt(first, span, depths);
   block.LastWeight = ends ? static_cast<float>(span.LastWeight) : WeightAt(last, span, depths);
 }
 

@@ -10,10 +10,10 @@ struct PipelineScene
 {
   ViewGeometry View = {}; ///< all bytes zero: views are compared byte by byte
   glsl::Look Look = {};
-  bool Translucent = false; ///< an isosurface is
-  bool Obstructed = false;  ///< opaque geometry may hide translucent isosurfaces
+  bool Translucent = false;  ///< an isosurface is
+  bool Obstructed = false;   ///< opaque geometry may hide translucent isosurfaces
   bool Conservative = false; ///< levels of detail lose nothing that the volume itself has
-  bool Categories = false;  ///< the colours' volume has categories, not values in between
+  bool Categories = false;   ///< the colours' volume has categories, not values in between
 };
 
 #endif

@@ -211,8 +211,7 @@ void ProgressivePipeline::UploadRanges(const RangeReader& ranges, const LevelGri
   for (std::int64_t first = 0; first < all; first += most)
   {
     const std::int64_t count = std::min(most, all - first);
-    const std::vector<std::uint32_t> words =
-      DescribeMacrocells(ranges, first, count, this->Needs);
+    const std::vector<std::uint32_t> words = DescribeMacrocells(ranges, first, count, this->Needs);
     this->Gpu->Transfer.Write(
       buffer, bytes * (grid.FirstMacrocell + first), words.data(), bytes * count);
   }

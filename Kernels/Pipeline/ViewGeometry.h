@@ -61,9 +61,9 @@ struct ViewGeometry
   std::int32_t ImageOrigin[2]; ///< in the viewport
   std::int32_t NumberOfIsovalues;
   std::int32_t NumberOfClippingPlanes;
-  std::int32_t DrawnRegions; ///< a bit for each cropping region
-  std::int32_t NumberOfLevels; ///< of detail that are drawn; 1: the volume itself
-  LevelSpan Levels[glsl::MAX_LEVELS]; ///< in the order of their depths
+  std::int32_t DrawnRegions;                     ///< a bit for each cropping region
+  std::int32_t NumberOfLevels;                   ///< of detail that are drawn; 1: the volume itself
+  LevelSpan Levels[glsl::MAX_LEVELS];            ///< in the order of their depths
   glsl::FloatSum Isovalues[glsl::MAX_ISOVALUES]; ///< in the units of the stream
 };
 

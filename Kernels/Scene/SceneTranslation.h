@@ -18,9 +18,9 @@ class vtkVolumeMapper;
 /// What a mapper's properties, and its renderer, ask for.
 struct SceneChoice
 {
-  int Viewport[4] = {};   ///< width, height and origin, in pixels, of what is drawn into
-  int ImageReduction = 1; ///< how many of these pixels there are to a ray on each axis
-  int LitSides = 0;       ///< see Constants.glsl.h
+  int Viewport[4] = {};           ///< width, height and origin, in pixels, of what is drawn into
+  int ImageReduction = 1;         ///< how many of these pixels there are to a ray on each axis
+  int LitSides = 0;               ///< see Constants.glsl.h
   std::vector<LevelSteps> Levels; ///< of detail to choose from; empty: the volume itself is drawn
   double PixelTolerance = 1.0;    ///< how many pixels the samples of a level may be apart
 };

@@ -127,7 +127,9 @@ TEST(LevelTranslation, SpansAreFixedWithinTheWay)
   view.Levels[2] = { EndlessDepth, EndlessDepth, 0.0, 0.0 };
   const glsl::View fixed = FixView(view);
   const auto way = [](std::int32_t high, std::uint32_t low)
-  { return std::ldexp(double(high), 32 - glsl::WAY_BITS) + std::ldexp(double(low), -glsl::WAY_BITS); };
+  {
+    return std::ldexp(double(high), 32 - glsl::WAY_BITS) + std::ldexp(double(low), -glsl::WAY_BITS);
+  };
   EXPECT_EQ(way(fixed.Levels[0].BlendHigh, fixed.Levels[0].BlendLow), 0.0);
   EXPECT_NEAR(fixed.Levels[0].FirstWeight, 0.8, 1e-5); // at depth 6
   EXPECT_NEAR(way(fixed.Levels[0].UntilHigh, fixed.Levels[0].UntilLow), 0.25, 1e-5);

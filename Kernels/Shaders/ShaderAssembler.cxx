@@ -142,8 +142,8 @@ void DefineFeatures(Definitions& definitions, const SceneNeeds& needs)
   const std::pair<bool, const char*> features[] = { { needs.Lit, "LIT" },
     { needs.SeveralIsovalues, "SEVERAL_ISOVALUES" }, { needs.Translucent, "TRANSLUCENT" },
     { needs.Obstructed, "OBSTRUCTED" }, { needs.Clipped, "CLIPPED" }, { needs.Cropped, "CROPPED" },
-    { needs.Colored, "COLORED" }, { needs.Categories, "CATEGORIES" },
-    { needs.Levels, "LEVELS" }, { needs.Levels && needs.Conservative, "CONSERVATIVE" },
+    { needs.Colored, "COLORED" }, { needs.Categories, "CATEGORIES" }, { needs.Levels, "LEVELS" },
+    { needs.Levels && needs.Conservative, "CONSERVATIVE" },
     // not every crossing of a ray with a surface is its hit
     { needs.Translucent || needs.Cropped, "MANY_CROSSINGS" },
     // hits are queued to be lit, coloured or blended

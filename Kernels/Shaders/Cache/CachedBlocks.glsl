@@ -62,7 +62,8 @@ struct PlaceInMap
 
 PlaceInMap PlaceOf(ivec3 block)
 {
-  uvec3 strides = uvec3(1, LEVEL_GRID.Macrocells.x, LEVEL_GRID.Macrocells.x * LEVEL_GRID.Macrocells.y);
+  uvec2 row = uvec2(LEVEL_GRID.Macrocells.xy);
+  uvec3 strides = uvec3(1u, row.x, row.x * row.y);
   const uvec3 localStrides = uvec3(1, MACROCELL_SIDE, MACROCELL_SIDE * MACROCELL_SIDE);
   return PlaceInMap(uvec3(MacrocellOf(block)) * strides + uvec3(FirstMacrocell(), 0, 0),
     (uvec3(block) & uint(MACROCELL_SIDE - 1)) * localStrides);

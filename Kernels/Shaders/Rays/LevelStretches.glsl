@@ -1,7 +1,8 @@
-// The stretches of a ray: in each it is in one level of detail, or in one that goes over to the next.
-// They end at parameters that are the same for all rays. A level's planes are some of the volume's
-// own, at the same parameters to the bit, so that at the end of a stretch a ray is, by the rule that
-// TraverseGrid.glsl tells, in the same place of both levels. Without levels a ray has one stretch.
+// The stretches of a ray: in each it is in one level of detail, or in one that goes over to the
+// next. They end at parameters that are the same for all rays. A level's planes are some of the
+// volume's own, at the same parameters to the bit, so that at the end of a stretch a ray is, by the
+// rule that TraverseGrid.glsl tells, in the same place of both levels. Without levels a ray has one
+// stretch.
 
 #include "Shared/Scene.glsl"
 #include "Shared/Grid.glsl"

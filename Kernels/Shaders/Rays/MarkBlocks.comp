@@ -88,8 +88,8 @@ uvec2 BlendMarks(uint macrocell)
 #endif
 
 #ifdef LEVELS
-// The blocks for which one of the volume's own samples that they stand for may be on the other side:
-// those of the level before, from the volume itself on, whose marks are there already.
+// The blocks that stand for samples of the volume itself between which the surface may be: those
+// over such blocks of the level before, whose marks are there already.
 uvec2 OriginalMarks(uint macrocell)
 {
   uvec2 marks = uvec2(0u);

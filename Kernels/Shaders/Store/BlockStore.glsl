@@ -1,7 +1,7 @@
 // Where a block's bits lie, which no other file knows, and a cursor that reads them. Block i of a
 // fixed-rate ZFP stream begins at bit i * BlockBits, which may need more than 32 bits and is not
-// aligned. Each level of detail has a stream of its own. A stream that is longer than one buffer can
-// be lies in segments of whole layers of macrocells; a dispatch sees one segment of one stream.
+// aligned. Each level of detail has a stream of its own. One that is longer than a buffer can be
+// lies in segments of whole layers of macrocells; a dispatch sees one segment of one stream.
 
 #include "Shared/Scene.glsl"
 #include "Shared/Buffers.glsl"

@@ -1,7 +1,7 @@
 // What the rays of pixels have met. The buffer has a section of a word a pixel for each of:
 // - the hit's key,
-// - its depth along the view direction; in a translucent image that of the first hit. With levels of
-//   detail its sign bit tells of that hit, or of a miss: see LEVEL_FLAG,
+// - its depth along the view direction; in a translucent image that of the first hit. With levels
+//   of detail its sign bit tells of that hit, or of a miss: see LEVEL_FLAG,
 // - with several isovalues the number of the hit's, and in the upper half that of the first hit's,
 // - with another volume for the colours its value at the hit,
 // - in a translucent image the window's depth where opaque geometry may hide the surface.

@@ -101,7 +101,8 @@ uint HiddenAround(ivec3 cell)
   uint around = 0u;
   for (int i = 0; i < 27; ++i)
   {
-    ivec3 other = clamp(cell + ivec3(i % 3, i / 3 % 3, i / 9) - 1, ivec3(0), LEVEL_GRID.Samples - 2);
+    ivec3 other = cell + ivec3(i % 3, i / 3 % 3, i / 9) - 1;
+    other = clamp(other, ivec3(0), LEVEL_GRID.Samples - 2);
     around |= HoldsCell(HiddenInSlot(FoundSlot(first, BlockOf(other))), other) ? 1u << i : 0u;
   }
   return around;
