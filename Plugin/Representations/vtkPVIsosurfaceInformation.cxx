@@ -10,6 +10,7 @@
 #include "vtkProgressiveIsosurfaceStatistics.h"
 
 #include <algorithm>
+#include <functional>
 
 vtkStandardNewMacro(vtkPVIsosurfaceInformation);
 
@@ -52,6 +53,7 @@ void vtkPVIsosurfaceInformation::Clear()
   this->GPUBytes = this->CompressedBytes = this->MemoryBudget = 0.0;
   this->PassMilliseconds.clear();
   this->PassCompleted.clear();
+  this->LevelPixels.clear();
 }
 
 //------------------------------------------------------------------------------
@@ -98,6 +100,15 @@ void vtkPVIsosurfaceInformation::AddBlock(vtkProgressiveIsosurfaceMapper* mapper
     fractions.push_back(statistics->GetPassValue(pass, "completed"));
   }
   this->JoinPasses(milliseconds, fractions, [](double a, double b) { return a + b; });
+  if (mapper->GetLevelOfDetail() != vtkProgressiveIsosurfaceMapper::LevelOfDetailOff)
+  {
+    std::vector<double> pixels;
+    for (int level = 0; level < statistics->GetNumberOfLevels(); ++level)
+    {
+      pixels.push_back(static_cast<double>(statistics->GetLevelPixels(level)));
+    }
+    this->AddLevels(pixels);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -126,6 +137,7 @@ void vtkPVIsosurfaceInformation::AddInformation(vtkPVInformation* information)
   this->MemoryBudget += other->MemoryBudget;
   this->JoinPasses(other->PassMilliseconds, other->PassCompleted,
     [](double a, double b) { return std::max(a, b); });
+  this->AddLevels(other->LevelPixels);
 }
 
 //------------------------------------------------------------------------------
@@ -150,6 +162,14 @@ void vtkPVIsosurfaceInformation::JoinPasses(const std::vector<double>& milliseco
 }
 
 //------------------------------------------------------------------------------
+void vtkPVIsosurfaceInformation::AddLevels(const std::vector<double>& pixels)
+{
+  this->LevelPixels.resize(std::max(this->LevelPixels.size(), pixels.size()));
+  std::transform(pixels.begin(), pixels.end(), this->LevelPixels.begin(), this->LevelPixels.begin(),
+    std::plus<double>());
+}
+
+//------------------------------------------------------------------------------
 void vtkPVIsosurfaceInformation::CopyToStream(vtkClientServerStream* stream)
 {
   stream->Reset();
@@ -159,6 +179,7 @@ void vtkPVIsosurfaceInformation::CopyToStream(vtkClientServerStream* stream)
           << this->Error.c_str() << this->Warning.c_str();
   Send(*stream, this->PassMilliseconds);
   Send(*stream, this->PassCompleted);
+  Send(*stream, this->LevelPixels);
   *stream << vtkClientServerStream::End;
 }
 
@@ -184,7 +205,8 @@ void vtkPVIsosurfaceInformation::CopyFromStream(const vtkClientServerStream* str
     *text = good && received ? received : "";
   }
   good = good && Receive(*stream, argument++, this->PassMilliseconds) &&
-    Receive(*stream, argument++, this->PassCompleted);
+    Receive(*stream, argument++, this->PassCompleted) &&
+    Receive(*stream, argument++, this->LevelPixels);
   if (!good || this->PassMilliseconds.size() != this->PassCompleted.size())
   {
     vtkErrorMacro("The statistics of a progressive isosurface arrived damaged: client and server "

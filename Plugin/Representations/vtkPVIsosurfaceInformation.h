@@ -6,8 +6,8 @@
  *
  * Gathers statistics from a vtkProgressiveIsosurfaceRepresentation. Processes that draw nothing (a
  * client that shows what a server renders, a process without a piece) do not count. Of all others,
- * bytes are summed, and of passes, completeness and times the slowest process counts. A process
- * that draws several blocks does so one after the other: their times are summed as well.
+ * bytes and pixels are summed, and of passes, completeness and times the slowest process counts. A
+ * process that draws several blocks does so one after the other: their times are summed as well.
  */
 
 #ifndef vtkPVIsosurfaceInformation_h
@@ -65,6 +65,11 @@ public:
   const std::vector<double>& GetPassMilliseconds() const { return this->PassMilliseconds; }
   const std::vector<double>& GetPassCompleted() const { return this->PassCompleted; }
 
+  /// For each level of detail, 0 being the volume itself, the pixels whose nearest surface it
+  /// draws; of several pieces or blocks, one before another, each counts. Empty where LevelOfDetail
+  /// is off.
+  const std::vector<double>& GetLevelPixels() const { return this->LevelPixels; }
+
 protected:
   vtkPVIsosurfaceInformation() = default;
   ~vtkPVIsosurfaceInformation() override = default;
@@ -75,6 +80,7 @@ private:
   /// Joins the passes of two, each pass by a function of their milliseconds.
   void JoinPasses(const std::vector<double>& milliseconds, const std::vector<double>& completed,
     double (*join)(double, double));
+  void AddLevels(const std::vector<double>& pixels);
 
   std::string Error;
   std::string Warning;
@@ -88,6 +94,7 @@ private:
   double MemoryBudget = 0.0;
   std::vector<double> PassMilliseconds;
   std::vector<double> PassCompleted;
+  std::vector<double> LevelPixels;
 
   vtkPVIsosurfaceInformation(const vtkPVIsosurfaceInformation&) = delete;
   void operator=(const vtkPVIsosurfaceInformation&) = delete;

@@ -486,6 +486,18 @@ void vtkProgressiveIsosurfaceRepresentation::SetFrameTime(double milliseconds)
 }
 
 //------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetLevelOfDetail(int when)
+{
+  this->GetIsosurfaceMapper()->SetLevelOfDetail(when);
+}
+
+//------------------------------------------------------------------------------
+void vtkProgressiveIsosurfaceRepresentation::SetPixelTolerance(double pixels)
+{
+  this->GetIsosurfaceMapper()->SetPixelTolerance(pixels);
+}
+
+//------------------------------------------------------------------------------
 void vtkProgressiveIsosurfaceRepresentation::SetUseClipPlane(bool on)
 {
   this->ClipPlanes[0].Used = on;

@@ -91,14 +91,18 @@ public:
   ///@{
   /**
    * Properties of the mapper: bits per voxel for plain data, whether NaN in them is hidden,
-   * speculation on or off, the memory budget in mebibytes (0: automatic), and the milliseconds that
-   * an image may take before it is shown, or has fewer rays while the camera moves.
+   * speculation on or off, the memory budget in mebibytes (0: automatic), the milliseconds that an
+   * image may take before it is shown, or has fewer rays while the camera moves, and whether levels
+   * of detail draw what is far (vtkProgressiveIsosurfaceMapper::LevelsOfDetail), with how many
+   * pixels between samples.
    */
   void SetRate(double bitsPerVoxel);
   void SetMaskNonFinite(bool on);
   void SetSpeculation(bool on);
   void SetMemoryBudget(int mebibytes);
   void SetFrameTime(double milliseconds);
+  void SetLevelOfDetail(int when);
+  void SetPixelTolerance(double pixels);
   ///@}
 
   ///@{

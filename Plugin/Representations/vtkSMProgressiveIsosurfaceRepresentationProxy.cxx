@@ -111,6 +111,9 @@ void vtkSMProgressiveIsosurfaceRepresentationProxy::UpdatePropertyInformationInt
   set("GPUBytes", this->Statistics->GetGPUBytes());
   set("CompressedBytes", this->Statistics->GetCompressedBytes());
   set("BudgetBytes", this->Statistics->GetMemoryBudget());
+  const std::vector<double>& levels = this->Statistics->GetLevelPixels();
+  vtkSMPropertyHelper(this, "LevelPixels")
+    .Set(levels.data(), static_cast<unsigned int>(levels.size()));
   this->InvokeEvent(vtkCommand::UpdateInformationEvent);
 }
 

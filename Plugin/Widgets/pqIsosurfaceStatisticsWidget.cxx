@@ -13,11 +13,14 @@
 #include <QHeaderView>
 #include <QLabel>
 #include <QProgressBar>
+#include <QStringList>
 #include <QTableWidget>
 #include <QVBoxLayout>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 namespace
 {
@@ -34,6 +37,17 @@ QString percent(double fraction)
 QString mebibytes(double bytes)
 {
   return QString::number(bytes / (1 << 20), 'f', 1);
+}
+
+// "0: 10.0 %, 1: 90.0 %", by how many pixels each level of detail draws
+QString parts(const std::vector<double>& pixels, double all)
+{
+  QStringList levels;
+  for (std::size_t level = 0; level < pixels.size(); ++level)
+  {
+    levels += QString("%1: %2").arg(level).arg(percent(pixels[level] / all));
+  }
+  return levels.join(", ");
 }
 
 QTableWidgetItem* number(const QString& text)
@@ -53,6 +67,8 @@ pqIsosurfaceStatisticsWidget::pqIsosurfaceStatisticsWidget(
   , Completed(new QProgressBar(this->Details))
   , Memory(new QProgressBar(this->Details))
   , Image(new QLabel(this->Details))
+  , LevelsTitle(new QLabel(tr("Levels"), this->Details))
+  , Levels(new QLabel(this->Details))
   , Passes(new QTableWidget(this->Details))
 {
   this->setShowLabel(false);
@@ -73,6 +89,9 @@ pqIsosurfaceStatisticsWidget::pqIsosurfaceStatisticsWidget(
   this->Memory->setToolTip(
     tr("Graphics memory beside the compressed volume, and the budget that bounds it"));
   this->Image->setObjectName("Image");
+  this->Levels->setObjectName("Levels");
+  this->Levels->setToolTip(tr("Part of the surface's pixels that each level of detail draws; level "
+                              "0 is the volume itself"));
   this->makeTable();
 
   auto* form = new QFormLayout(this->Details);
@@ -80,6 +99,7 @@ pqIsosurfaceStatisticsWidget::pqIsosurfaceStatisticsWidget(
   form->addRow(tr("Completed"), this->Completed);
   form->addRow(tr("Memory"), this->Memory);
   form->addRow(tr("Image"), this->Image);
+  form->addRow(this->LevelsTitle, this->Levels);
   form->addRow(this->Passes);
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
@@ -142,8 +162,25 @@ void pqIsosurfaceStatisticsWidget::showStatistics()
   this->showMemory(statistics);
   this->Summary->setText(passes == 0
       ? tr("No image yet")
-      : tr("%1 complete: %2; %3 used").arg(percent(completed), image, this->Memory->text()));
+      : tr("%1 complete: %2; %3 used%4")
+          .arg(percent(completed), image, this->Memory->text(), this->showLevels(statistics)));
   this->showPasses(statistics);
+}
+
+//-----------------------------------------------------------------------------
+QString pqIsosurfaceStatisticsWidget::showLevels(vtkPVIsosurfaceInformation* statistics)
+{
+  const std::vector<double>& pixels = statistics->GetLevelPixels();
+  const double all = std::accumulate(pixels.begin(), pixels.end(), 0.0);
+  const bool several = pixels.size() > 1 && all > 0.0;
+  this->LevelsTitle->setVisible(several);
+  this->Levels->setVisible(several);
+  if (!several)
+  {
+    return QString();
+  }
+  this->Levels->setText(parts(pixels, all));
+  return tr("; %1 of the surface from coarser levels").arg(percent(1.0 - pixels[0] / all));
 }
 
 //-----------------------------------------------------------------------------

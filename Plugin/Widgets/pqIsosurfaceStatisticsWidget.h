@@ -5,10 +5,10 @@
  * @brief   shows in ParaView's panel how a progressive isosurface refines
  *
  * Shows the property group of a progressive isosurface's statistics: how much of the image is
- * complete, memory and its budget, in a line; with advanced properties also the passes with their
- * times. It follows its
- * vtkSMProgressiveIsosurfaceRepresentationProxy, which gathers the statistics after every image,
- * and changes nothing.
+ * complete, memory and its budget, and how much of the surface coarser levels of detail draw, in a
+ * line; with advanced properties also the passes with their times, and the part of each level. It
+ * follows its vtkSMProgressiveIsosurfaceRepresentationProxy, which gathers the statistics after
+ * every image, and changes nothing.
  */
 
 #ifndef pqIsosurfaceStatisticsWidget_h
@@ -42,6 +42,8 @@ private Q_SLOTS:
 private:
   void makeTable();
   void showMemory(vtkPVIsosurfaceInformation* statistics);
+  /// Returns what the line says of them, which is nothing where there is one level.
+  QString showLevels(vtkPVIsosurfaceInformation* statistics);
   void showPasses(vtkPVIsosurfaceInformation* statistics);
 
   vtkWeakPointer<vtkSMProgressiveIsosurfaceRepresentationProxy> Source;
@@ -50,6 +52,8 @@ private:
   QProgressBar* Completed;
   QProgressBar* Memory;
   QLabel* Image;
+  QLabel* LevelsTitle;
+  QLabel* Levels;
   QTableWidget* Passes;
 
   Q_DISABLE_COPY(pqIsosurfaceStatisticsWidget)

@@ -24,7 +24,7 @@ NAMES = "show_plain show_compressed opaque zfp_files interactive errors".split()
 NAMES += "cell_data panel trace contour color_by hidden translucent blocks".split()
 NAMES += "many_isovalues magnitude still volume_state grids ranges compress".split()
 NAMES += "picking color_maps failures".split()
-NAMES += "turning lights waiting mirrored".split()
+NAMES += "turning lights waiting mirrored levels".split()
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -77,15 +77,20 @@ def test_panel_in_the_window(build, tmp_path):
     assert found["default"] == "Progressive Isosurface"
     hidden = ("Isosurface Array", "Isosurface Component", "Mask NaN", "Speculation")
     hidden += ("Compression Rate (bits per voxel)", "Memory Budget (MiB)")
+    hidden += ("Level Of Detail Tolerance (pixels)", "Levels")
     simple, advanced, plain = found["simple"], found["advanced"], found["plain"]
-    assert not set(hidden) & set(simple), simple
+    assert not set(hidden) & set(simple) and "Level Of Detail" in simple, simple
     assert (
         simple.index("Progressive Isosurface") < simple.index("Coloring") < simple.index("Lighting")
     )
     assert simple.count("Progressive Isosurface") == 1
     assert any("complete: 1 pass" in text for text in simple), simple
     assert {"Speculation", "Memory Budget (MiB)", "Completed"} <= set(advanced), advanced
+    assert "Level Of Detail Tolerance (pixels)" in advanced, advanced
     assert not {"Isosurface Array", "Compression Rate (bits per voxel)"} & set(advanced), advanced
+    assert "Levels" not in advanced and "0: 0.0 %, 1: 100 %" in found["levels"], found["levels"]
+    assert any("100 % of the surface from coarser levels" in text for text in found["coarse"])
+    assert not any("coarser levels" in text for text in simple), simple
     assert {"Isosurface Array", "Compression Rate (bits per voxel)"} <= set(plain), plain
     assert "Isosurface Component" not in plain and "Isosurface Component" in found["vectors"]
 
@@ -97,7 +102,7 @@ def test_panel_in_the_window(build, tmp_path):
     assert found["undone"] == found["before"]
 
     assert found["cropped"] == found["clipped"] == found["second"] == 1
-    for name in ("simple", "slider", "cropping", "plane", "advanced", "plain"):
+    for name in ("simple", "slider", "cropping", "plane", "advanced", "levels", "plain"):
         assert (tmp_path / f"gui_{name}.png").stat().st_size > 50_000
 
 
@@ -134,5 +139,6 @@ def test_help_pages(build):
     for page in (*pages, "representations.ProgressiveIsosurfaceRepresentation"):
         assert f"<file>{page}.html</file>" in listed, listed
     text = folder.joinpath(f"{page}.html").read_text()
-    for words in ("Isovalues", "Frame Time", "Clip Plane", "Resample Uneven Grids"):
+    named = ("Isovalues", "Frame Time", "Clip Plane", "Resample Uneven Grids", "Level Of Detail")
+    for words in named:
         assert words in text, words

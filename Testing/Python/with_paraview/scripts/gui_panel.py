@@ -1,7 +1,7 @@
 """Runs inside ParaView's own window (see gui.sh) and uses the panel as a user would.
 
 Writes gui.json with what the panel showed, and pictures of the window: gui_simple.png,
-gui_slider.png, gui_cropping.png, gui_plane.png, gui_advanced.png and gui_plain.png.
+gui_slider.png, gui_cropping.png, gui_plane.png, gui_advanced.png, gui_levels.png and gui_plain.png.
 """
 
 import window
@@ -36,7 +36,7 @@ def scenario():
     """Use the panel; yield the milliseconds for which the window is left alone."""
     window.make_room_for_panel()
     wavelet = simple.Wavelet(WholeExtent=[-40, 40] * 3)
-    compressed = simple.ZFPCompress(Input=wavelet, Rate=8)
+    compressed = simple.ZFPCompress(Input=wavelet, Rate=8, Levels=1)
     display = simple.Show(compressed, view)
     found["default"] = display.Representation[0]
     simple.SetActiveSource(compressed)
@@ -95,7 +95,18 @@ def scenario():
     yield 1500
     found["advanced"] = labels()
     picture("advanced")
+
+    # where levels of detail draw, their parts are told
+    display.LevelOfDetail, display.PixelTolerance = "On", 64.0
+    simple.Render(view)
+    yield 1500
+    while not any(text.startswith("0: ") for text in labels()):  # the driver compiles
+        yield 200
+    found["levels"] = labels()
     advanced.click()
+    yield 500
+    found["coarse"] = labels()
+    picture("levels")
 
     # a plain image has more to choose, vectors their component
     simple.Hide(compressed, view)

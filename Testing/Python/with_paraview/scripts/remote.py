@@ -61,4 +61,17 @@ with server.connected(PROCESSES):
     session.check_same(there, session.screenshot(view, "remote_compressed.png"))
     assert session.check_converged(packed)["processes"] == PROCESSES
 
+    # with levels of detail: the server's windows, too, know whether the camera moves
+    leveled = simple.ZFPCompress(Input=wavelet, Rate=display.CompressionRate, Levels=11)
+    simple.Hide(compressed, view)
+    packed = session.show_isosurface(leveled, view, **LOOK, LevelOfDetail="Interactive")
+    packed.PixelTolerance = 64.0
+    session.check_same(there, session.screenshot(view, "remote_levels.png"))
+    (still,) = session.figures(packed, "LevelPixels")
+    view.SMProxy.InteractiveRender()
+    while session.information(packed)["completed"] < 1.0:
+        view.SMProxy.InteractiveRender()
+    exact, *coarser = session.figures(packed, "LevelPixels")
+    assert exact == 0.0 < sum(coarser) and still > 0.0, (still, exact, coarser)
+
 session.finish(here=info_here, there=info)

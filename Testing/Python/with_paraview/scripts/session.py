@@ -98,6 +98,13 @@ def information(display):
     }
 
 
+def figures(display, name):
+    """Return the values of one of the representation's information properties."""
+    display.SMProxy.UpdatePropertyInformation()
+    helper = servermanager.vtkSMPropertyHelper(display.SMProxy, name)
+    return [helper.GetAsDouble(i) for i in range(helper.GetNumberOfElements())]
+
+
 def move(display, position):
     """Move what a display shows, by the property that ParaView has called Translation since
     5.13."""
