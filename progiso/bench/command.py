@@ -68,6 +68,14 @@ def _add_set(
     if name == "interactive":
         _add_sizes(one, size_type, FLIGHT_SIZES)
         one.set_defaults(size=HD)
+    elif name == "bounds":
+        _add_sizes(one, size_type, (), "1280x720 on a GPU, 640x360 without one")
+        one.set_defaults(size=HD)
+        one.add_argument(
+            "--pictures", metavar="FOLDER", type=Path,
+            help="draw a sheet of every view's pictures, with their differences from the "
+            "reference, into a folder, made when it is missing",
+        )  # fmt: skip
     else:
         one.add_argument(
             "--size", metavar="WxH", type=size_type, default=HD, help="pixels (default: 1280x720)"
@@ -135,9 +143,10 @@ def _add_sizes(
     one: argparse.ArgumentParser,
     size_type: Callable[[str], tuple[int, int]],
     default: Sequence[tuple[int, int]],
+    in_words: str | None = None,
 ) -> None:
     """Add the option of several sizes of images."""
-    listed = ",".join(f"{width}x{height}" for width, height in default)
+    listed = in_words or ",".join(f"{width}x{height}" for width, height in default)
     one.add_argument(
         "--images", metavar="WxH,WxH", default=tuple(default),
         type=lambda text: tuple(size_type(part) for part in text.split(",")),
@@ -183,7 +192,7 @@ def _run_set(parsed: argparse.Namespace) -> None:
     if max(max(size) for size in (settings.size, *settings.images)) > MAX_SIZE:
         raise ValueError(f"images must be at most {MAX_SIZE} pixels wide and high")
     measurements = steps(parsed.set, parsed.fields, settings)
-    if not parsed.no_plots:
+    if not parsed.no_plots or settings.pictures is not None:
         _check_matplotlib()
     parsed.output.mkdir(parents=True, exist_ok=True)
     use_all_cores()
@@ -218,7 +227,9 @@ def _report(parsed: argparse.Namespace) -> None:
 
 def _check_matplotlib() -> None:
     if importlib.util.find_spec("matplotlib") is None:
-        raise ImportError("plots need matplotlib: install it, or give --no-plots where it is taken")
+        raise ImportError(
+            "plots and pictures need matplotlib: install it, or give --no-plots where it is taken"
+        )
 
 
 def _write(document: dict[str, Any], page: Path, folder: Path, with_plots: bool) -> None:

@@ -19,6 +19,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 from ..measure.isosurface import Isosurface
 from ..measure.mesh import Mesh
 from ..measure.text import number, pixels
+from .bounds import CONSERVATIVE, EXACT, OURS, THEIRS
 from .driver import MOVEMENTS
 from .errors import DEFAULT_DISTANCE
 from .interactive import BASELINE
@@ -256,6 +257,45 @@ def _error_over_time(record: dict[str, Any]) -> Figure:
     handles, labels = upper.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=3)
     return figure
+
+
+def _draw_bounds(records: list[dict[str, Any]]) -> dict[str, Figure]:
+    records = [record for record in records if "left_out" not in record]
+    return {_file("bounds", record): _bounds_over_time(record) for record in records}
+
+
+def _bounds_over_time(record: dict[str, Any]) -> Figure:
+    """Plot depth and colour error over time, a column of panels for each view."""
+    views = record["views"]
+    figure, panels = _figure(12, 6.5, nrows=2, ncols=len(views), sharex="col", sharey="row")
+    for view, column in zip(views, np.transpose(panels)):
+        rows = {row["way"]: row for row in view["rows"] if "failed" not in row}
+        for (label, ways), (color, marker) in zip(_BOUND_SERIES.items(), _CYCLE):
+            chosen = [rows[way] for way in ways if way in rows]
+            for axes, key in zip(column, ("mean", "color")):
+                points = [(row["ms"], row[key]) for row in chosen if row[key] is not None]
+                axes.plot(*np.reshape(points, (-1, 2)).T, color=color, marker=marker, label=label)
+        column[0].set_title(view["view"], fontsize=10)
+        for axes in column:
+            axes.set_xscale("log")
+            _log(axes.xaxis)
+        column[1].set_xlabel("ms of a view after a move")
+    panels[0, 0].set_yscale("log")
+    panels[0, 0].set_ylabel("depth error in footprints, mean")
+    panels[1, 0].set_ylim(bottom=0)
+    panels[1, 0].set_ylabel("colour error, RMS, 0 to 255")
+    figure.suptitle(f"{_titled(record)}, isovalue {number(record['isovalue'])}")
+    figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    return figure
+
+
+#: The lines of a plot of bounds, by the ways at their points.
+_BOUND_SERIES = {
+    "Off": (EXACT,),
+    "On: 0.5, 1, 2 pixels": tuple(way for way in OURS if way not in (EXACT, CONSERVATIVE)),
+    "Conservative": (CONSERVATIVE,),
+    "VTK: 1/4, 1, 4 voxels": tuple(THEIRS),
+}
 
 
 def _draw_rates(records: list[dict[str, Any]]) -> dict[str, Figure]:
@@ -500,6 +540,7 @@ _DRAW = {
     "errors": _draw_errors,
     "rates": _draw_rates,
     "level_spheres": _draw_level_spheres,
+    "bounds": _draw_bounds,
     "image_scaling": _draw_image_scaling,
     "volume_scaling": _draw_volume_scaling,
     "budget": _draw_budget,

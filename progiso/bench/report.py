@@ -14,6 +14,7 @@ from ..measure.isosurface import Isosurface
 from ..measure.machine import machine_in_words
 from ..measure.text import bytes_, count, milliseconds, number, percent, pixels, table
 from . import goals
+from .bounds_report import tables_of_bounds
 from .driver import MOVEMENTS
 from .errors import DEFAULT_DISTANCE
 from .fields import parse_field
@@ -895,6 +896,7 @@ _SECTIONS = {
     "rates": _rates,
     "level_spheres": lambda _report, records: tables_of_spheres(records),
     "levels": lambda _report, records: tables_of_levels(records),
+    "bounds": lambda _report, records: tables_of_bounds(records),
     "image_scaling": _image_scaling,
     "volume_scaling": _volume_scaling,
     "budget": _budget,

@@ -7,11 +7,14 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
+from ..measure.machine import describe_machine
 from ..measure.text import pixels
+from .bounds import LARGEST_IMAGE, measure_bounds
 from .budget import measure_budget
 from .errors import measure_errors
 from .fields import Field, parse_field
 from .first_image import measure_first_image
+from .goals import HD
 from .interactive import measure_interactive
 from .latency import measure_latency
 from .levels import measure_levels, measure_spheres
@@ -65,6 +68,12 @@ SETS = {
     "errors": Defaults("depth error against run time", (*SCANS, *SMALL), PEERS, 10),
     "rates": Defaults("errors and topology over the bits per sample", (*SCANS, *SMALL), PEERS, 10),
     "levels": Defaults("filters and rates of levels of detail", (*SCANS, *SMALL), PEERS, 10),
+    "bounds": Defaults(
+        "errors and times of levels of detail, beside VTK's isosurface mapper",
+        (SMALL[1], LARGE[1], *SCANS),
+        PEERS,
+        10,
+    ),
     "budget": Defaults("time and memory within memory budgets", (LARGE[0],), PEERS, 10),
     "interactive": Defaults(
         "frames of a fly-through, beside VTK's and an earlier commit's", FLOWN_THROUGH, PEERS, 10
@@ -78,8 +87,11 @@ SETS = {
     "soak": Defaults("memory over thousands of random changes", ("gyroid-64-k3-r8",), PEERS, 2),
 }
 
+#: Size of the images of `bounds` without a GPU; with one it is `HD`.
+SMALL_IMAGE = (640, 360)
+
 #: What `quick` leaves out of the longer series.
-_QUICK_IMAGES = ((640, 360), (1280, 720))
+_QUICK_IMAGES = (SMALL_IMAGE, HD)
 _QUICK_VOLUMES = tuple((n, n, n) for n in (64, 128, 256))
 _QUICK_RATES, _QUICK_DISTANCES = (2.0, 4.0, 8.0, 16.0), (0.25, 0.5, 1.0)
 
@@ -130,16 +142,26 @@ def _scaling(fields: Sequence[Field], settings: Settings) -> list[Step]:
     return _each("image_scaling", measure_image_scaling, fields, settings) + volumes
 
 
-def _interactive(fields: Sequence[Field], settings: Settings) -> list[Step]:
+def _each_size(
+    kind: str, measure: Callable[..., dict[str, Any]], fields: Sequence[Field], settings: Settings
+) -> list[Step]:
     return [
         (
-            "interactive",
+            kind,
             f"{field.name}, {pixels(size)}",
-            partial(measure_interactive, field, replace(settings, size=size)),
+            partial(measure, field, replace(settings, size=size)),
         )
         for field in fields
         for size in settings.images
     ]
+
+
+def _bounds(fields: Sequence[Field], settings: Settings) -> list[Step]:
+    software = "llvmpipe" in describe_machine()["gl"]
+    sizes = settings.images or (SMALL_IMAGE if software else HD,)
+    if max(max(size) for size in sizes) > LARGEST_IMAGE:
+        raise ValueError(f"images of bounds must be at most {LARGEST_IMAGE} pixels wide and high")
+    return _each_size("bounds", measure_bounds, fields, replace(settings, images=sizes))
 
 
 def _quick(fields: Sequence[Field], settings: Settings) -> list[Step]:
@@ -164,8 +186,9 @@ _STEPS: dict[str, Callable[[Sequence[Field], Settings], list[Step]]] = {
     "errors": partial(_each, "errors", measure_errors),
     "rates": partial(_each, "rates", measure_rates),
     "levels": _levels,
+    "bounds": _bounds,
     "budget": partial(_each, "budget", measure_budget),
-    "interactive": _interactive,
+    "interactive": partial(_each_size, "interactive", measure_interactive),
     "first-image": partial(_each, "first_image", measure_first_image),
     "soak": partial(_each, "soak", measure_soak),
 }

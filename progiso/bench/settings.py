@@ -40,7 +40,7 @@ class Settings:
     largest : int, optional
         Largest side of the volumes in the scaling with volume size.
     images : tuple of tuple of int
-        Widths and heights in the scaling with image size, or of a fly-through.
+        Widths and heights in the scaling with image size, of a fly-through, or of bounds.
     largest_mesh : int, optional
         Largest side of the volumes that meshes are made of.
     largest_plain : int, optional
@@ -49,6 +49,8 @@ class Settings:
         Of the long run, or of each movement of a fly-through.
     baseline : pathlib.Path, optional
         Where the package of an earlier commit is imported from, see `processes`.
+    pictures : pathlib.Path, optional
+        Folder where sheets of pictures go.
     """
 
     size: tuple[int, int]
@@ -62,6 +64,7 @@ class Settings:
     largest_plain: int | None = None
     frames: int = 10_000
     baseline: Path | None = None
+    pictures: Path | None = None
 
     def isovalues_of(self, field: Field) -> list[float]:
         """Return the isovalues that a field is rendered at."""

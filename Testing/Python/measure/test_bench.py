@@ -13,16 +13,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.image import imread
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import progiso
 from helpers.programs import call_progiso
 from progiso import _built
 from progiso.bench import goals
+from progiso.bench.bounds import OURS, THEIRS, averaged, color_error, depth_errors
 from progiso.bench.fields import parse_field
 from progiso.bench.literature import GPU
 from progiso.bench.report import markdown
 from progiso.bench.settings import PEERS, Settings
+from progiso.bench.sheets import draw_sheet
 from progiso.bench.soak import growth
 from progiso.data import fetch
 from progiso.measure.document import load_document, merge
@@ -39,6 +42,7 @@ KINDS = {
     "errors": {"errors"},
     "rates": {"rates"},
     "levels": {"level_spheres", "levels"},
+    "bounds": {"bounds"},
     "budget": {"budget"},
     "interactive": {"interactive"},
     "first-image": {"first_image"},
@@ -48,6 +52,7 @@ OPTIONS = {
     "quick": ("--isovalues", 2),
     "paper": ("--isovalues", 2),
     "scaling": ("--largest", 64, "--images", "64x48,96x72"),
+    "bounds": ("--fields", "gyroid-72-k6-r8", "--images", "64x48", "--pictures", "sheets"),
     "interactive": ("--images", "64x48,48x64", "--frames", 3, "--baseline", PACKAGE),
     "first-image": ("--baseline", PACKAGE),
     "soak": ("--frames", 40),
@@ -66,7 +71,7 @@ def results(folder):
 
     def run(name):
         if not (folder / name).exists():
-            images = FIELD if name == "interactive" else TINY
+            images = FIELD if name in ("bounds", "interactive") else TINY
             call_progiso(folder, "bench", name, *images, *OPTIONS.get(name, ()), "--output", name)
         return folder / name
 
@@ -253,6 +258,7 @@ FAILURES = {
     "image too large": (["paper", "--size", "20000x5"], "16384"),
     "images": (["scaling", "--images", "64x48,wide"], "wide"),
     "largest": (["scaling", "--largest", "3"], "64"),
+    "reference too large": (["bounds", "--images", "64x48,4000x40"], "2048"),
     "baseline": (["interactive", "--baseline", "no-such-thing"], "no-such-thing"),
     "baseline without a package": (["first-image", "--baseline", "an-empty-folder"], "holds no"),
     "baseline that is no archive": (["interactive", "--baseline", "a-file"], "no archive"),
@@ -300,6 +306,91 @@ def test_rates_tell_what_they_cost(results):
     off = vtk_to_numpy(decoded.GetPointData().GetScalars()).astype(float) - vtk_to_numpy(values)
     assert points[2]["max_error"] == np.abs(off).max()
     assert points[2]["rms_error"] == pytest.approx(np.sqrt(np.mean(off**2)))
+
+
+def test_bounds_order_the_ways(results):
+    """The volume itself is drawn exactly; levels spare blocks, and only where rays look at the
+    volume, too, is nothing missed; VTK's errors grow with its steps."""
+    record = load_document(results("bounds") / "results.json")["measurements"]["bounds"][0]
+    assert record["exact"] == "caster"
+    hits = [view["hits"] for view in record["views"]]
+    assert hits == sorted(hits, reverse=True) and hits[-1] > 0
+    for view in record["views"]:
+        rows = {row["way"]: row for row in view["rows"]}
+        assert list(rows) == [*OURS, *THEIRS]
+        off, coarse, conservative = (rows[w] for w in ("Off", "On, 2 pixels", "Conservative"))
+        assert off["largest"] < 1e-4 and off["missed"] == off["invented"] == off["uncertain"] == 0
+        assert off["levels"]["0"] == view["hits"] and coarse["levels"]["0"] == 0
+        assert coarse["blocks"] < off["blocks"] and coarse["uncertain"] > 0
+        assert coarse["mean"] > 1000 * off["mean"] and coarse["mean"] > conservative["mean"]
+        assert conservative["missed"] == conservative["uncertain"] == 0
+        theirs = [rows[way]["mean"] for way in THEIRS]
+        assert theirs == sorted(theirs) and theirs[0] > 100 * off["mean"]
+        assert all(row["ms"] > 0 and 0 < row["color"] < 255 for row in rows.values())
+    middle = {row["way"]: row["missed"] for row in record["views"][0]["rows"]}
+    assert middle["On"] > 0 and middle["VTK, 4 voxels"] > middle["VTK, 1 voxel"] > 0
+
+
+def test_bounds_of_what_fails(results):
+    """A way or a field that cannot be drawn is told, and everything else stays."""
+    document = load_document(results("bounds") / "results.json")
+    before = markdown(document, {})
+    document["measurements"]["bounds"][0]["views"][1]["rows"][-1] = {"way": "W", "failed": "no GPU"}
+    text = markdown(document, {})
+    assert "|  | W | no GPU |" in text and text.count("\n") == before.count("\n")
+    widths = {line.count("|") for line in text.splitlines() if line.startswith("|  |")}
+    assert len(widths) == 1
+    document["measurements"]["bounds"][0] = {"field": "F", "size": [8, 6], "left_out": "too large"}
+    document["measurements"]["bounds"][0]["others_cores"] = 0
+    assert "F, 8×6: too large." in markdown(document, {})
+
+
+def test_errors_in_footprints():
+    """Depths are off in pixels' footprints where they are; missed and invented rays count apart."""
+    inf = np.inf
+    exact = np.array([10.0, 20.0, 40.0, 10.0, inf, inf])
+    depth = np.array([10.0, 21.0, 38.0, inf, 5.0, inf])
+    found = depth_errors(depth, exact, np.array([0.1, 0.1, 0.2, 0.1, 0.1, 0.1]))
+    assert found["mean"] == pytest.approx((0 + 1 / 2 + 2 / 8) / 3)
+    assert found["largest"] == pytest.approx(0.5) and 0.48 < found["p99"] < 0.5
+    assert found["missed"] == found["invented"] == 1 / 4
+    nothing = depth_errors(np.full(2, inf), np.full(2, inf), np.ones(2))
+    assert nothing == {"mean": None, "p99": None, "largest": None, "missed": 0, "invented": 0}
+
+
+def test_color_error_is_that_of_what_is_shown():
+    reference = np.zeros((2, 3, 3), np.float32)
+    picture = np.zeros((2, 3, 3), np.uint8)
+    assert color_error(picture, reference) == 0
+    reference[0, 0], picture[1, 2] = 4.0, 4
+    assert color_error(picture, reference) == 4
+    reference[0, 1], picture[0, 1] = 7.5, 7
+    assert color_error(picture, reference) == pytest.approx(np.sqrt((4**2 + 4**2 + 0.5**2) / 3))
+
+
+def test_averaged_squares():
+    picture = np.zeros((4, 6, 3), np.uint8)
+    picture[:2, 2:4] = 255
+    picture[3, 5, 1] = 2
+    expected = np.zeros((2, 3, 3))
+    expected[0, 1], expected[1, 2, 1] = 255, 0.5
+    assert np.array_equal(averaged(picture, 2), expected)
+
+
+def test_sheets_show_what_is_wrong(results, folder):
+    """There is one for every view, with all pictures; differences from the last are amplified."""
+    results("bounds")
+    names = {path.name for path in (folder / "sheets").iterdir()}
+    assert names == {f"{view}-gyroid-72-k6-r8-64x48.png" for view in ("middle", "far", "farthest")}
+    picture = np.zeros((60, 80, 3), np.uint8)
+    picture[20:40, 10:30] = 90
+    brighter = picture + np.uint8(10) * (picture > 0)
+    draw_sheet({"one": picture, "other": brighter}, folder / "sheet.png")
+    pixels = np.round(255 * imread(folder / "sheet.png")[..., :3]).astype(int)
+    upper, lower = np.array_split(pixels, 2)
+    for value, there in ((90, upper), (100, upper), (4 * 10, lower)):
+        shown = int((there == value).all(axis=-1).sum())
+        assert 180**2 <= shown < 180**2 + 200  # enlarged nine times; letters have such pixels, too
 
 
 def test_goals_are_computed(results):
