@@ -6,6 +6,7 @@
 #include "Codec/BlockGeometry.h"
 #include "Codec/BlockStream.h"
 #include "Codec/LevelShape.h"
+#include "Format/LevelGeometry.h"
 #include "Pieces/PipelineRequests.h"
 #include "Status.h"
 
@@ -198,27 +199,6 @@ Status DecodeSamples(vtkCompressedVolume* volume, int threads, const ProgressCal
 }
 
 //------------------------------------------------------------------------------
-// Gives an image that has a volume's geometry that of one of its levels: so many samples per axis,
-// every `steps`th of the volume's, the first of which is that of index `first`.
-void SetLevelGeometry(
-  const int first[3], const int dims[3], const int steps[3], bool cellData, vtkImageData* image)
-{
-  double start[3], spacing[3], origin[3];
-  int extent[6];
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    start[axis] = first[axis] + (cellData ? 0.5 - 0.5 * steps[axis] : 0.0);
-    spacing[axis] = image->GetSpacing()[axis] * steps[axis];
-    extent[2 * axis] = 0;
-    extent[2 * axis + 1] = dims[axis] - (cellData ? 0 : 1);
-  }
-  image->TransformContinuousIndexToPhysicalPoint(start, origin);
-  image->SetExtent(extent);
-  image->SetSpacing(spacing);
-  image->SetOrigin(origin);
-}
-
-//------------------------------------------------------------------------------
 Status DecodeLevel(vtkCompressedVolume* volume, int number, int threads,
   const ProgressCallback& progress, vtkImageData* output)
 {
@@ -228,12 +208,9 @@ Status DecodeLevel(vtkCompressedVolume* volume, int number, int threads,
     return Status::Error("no level ", number, ": the volume has ", volume->GetNumberOfLevels(),
       " levels of detail beside itself");
   }
-  const int* const extent = volume->GetExtent();
-  const int first[3] = { extent[0], extent[2], extent[4] };
   output->GetPointData()->Initialize(); // what hides samples of the volume came with its structure
   output->GetCellData()->Initialize();
-  SetLevelGeometry(first, level->GetDimensions(), level->GetSteps(),
-    level->GetAssociation() == vtkCompressedVolume::CellData, output);
+  LevelGeometry::Set(volume, level, output);
   vtkSmartPointer<vtkDataArray> samples;
   const Status status = DecodeSamples(level, threads, progress, samples);
   if (status)
@@ -263,7 +240,7 @@ void PredictLevelGeometry(int number, vtkInformation* information)
   {
     const LevelShape& shape = shapes.back();
     const int first[3] = { extent[0], extent[2], extent[4] };
-    SetLevelGeometry(first, shape.Dimensions, shape.Steps, false, image);
+    LevelGeometry::Set(first, shape.Dimensions, shape.Steps, false, image);
     information->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), image->GetExtent(), 6);
     information->Set(vtkDataObject::SPACING(), image->GetSpacing(), 3);
     information->Set(vtkDataObject::ORIGIN(), image->GetOrigin(), 3);

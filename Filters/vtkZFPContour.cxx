@@ -9,6 +9,7 @@
 #include "Contour/PartExtractor.h"
 #include "Contour/SurfaceJoiner.h"
 #include "Contour/SurfaceParts.h"
+#include "Format/LevelGeometry.h"
 #include "Pieces/PipelineRequests.h"
 #include "Status.h"
 
@@ -74,15 +75,25 @@ vtkSmartPointer<vtkImageData> MakeSampleGeometry(vtkImageData* image, vtkCompres
 }
 
 //------------------------------------------------------------------------------
+// Checks that there is such a level.
+Status CheckLevel(vtkCompressedVolume* volume, int level)
+{
+  return level <= volume->GetNumberOfLevels()
+    ? Status()
+    : Status::Error("There is no level ", level, ": the volume has ", volume->GetNumberOfLevels(),
+        " levels of detail beside itself.");
+}
+
+//------------------------------------------------------------------------------
 // Finds the cells between samples that are contoured, and whether some of them are ghosts: those of
 // the image, and where it is a piece of one that several processes share, the requested levels
-// around it. `samples` is the extent of the stream's samples. Of cell data, the cells behind an
+// around it. Without information it is none. `samples` is the extent of the stream's samples. Of cell data, the cells behind an
 // image's last samples belong to it where another process has the next samples.
 Bricks::Box FindCells(vtkCompressedVolume* volume, const int own[6], vtkInformation* inputInfo,
   vtkInformation* outputInfo, const int samples[6], bool& hasGhosts)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  const bool isPiece = inputInfo->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
+  const bool isPiece = inputInfo && inputInfo->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
   const int levels = isPiece ? outputInfo->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()) : 0;
   int whole[6];
   std::copy_n(own, 6, whole);
@@ -216,9 +227,13 @@ int vtkZFPContour::RequestData(
     return 1;
   }
   vtkNew<vtkCompressedVolume> volume;
-  const Status status = volume->Read(input)
+  Status status = volume->Read(input)
     ? CheckIsovalues(this->GetIsovalues())
     : Status::Error("The input is ", volume->GetErrorMessage(), ".");
+  if (status)
+  {
+    status = CheckLevel(volume, this->Level);
+  }
   if (!status)
   {
     vtkErrorMacro(<< status.GetMessage());
@@ -228,7 +243,17 @@ int vtkZFPContour::RequestData(
   vtkInformation* const inputInfo = inputVector[0]->GetInformationObject(0);
   vtkInformation* const outputInfo = outputVector->GetInformationObject(0);
   RunWithThreads(this->NumberOfThreads,
-    [&]() { this->ContourVolume(input, volume, inputInfo, outputInfo, output); });
+    [&]()
+    {
+      if (this->Level > 0)
+      {
+        this->ContourLevel(input, volume, output);
+      }
+      else
+      {
+        this->ContourVolume(input, volume, inputInfo, outputInfo, output);
+      }
+    });
   return 1;
 }
 
@@ -237,6 +262,21 @@ std::vector<double> vtkZFPContour::GetIsovalues()
 {
   const double* values = this->GetValues();
   return { values, values + this->GetNumberOfContours() };
+}
+
+//------------------------------------------------------------------------------
+// A level is a volume of its own, on an image of its own.
+void vtkZFPContour::ContourLevel(
+  vtkImageData* input, vtkCompressedVolume* volume, vtkPolyData* output)
+{
+  vtkCompressedVolume* const level = volume->GetLevel(this->Level);
+  vtkNew<vtkImageData> image;
+  image->CopyStructure(input);
+  image->GetPointData()->Initialize(); // what hides samples of the volume came with its structure
+  image->GetCellData()->Initialize();
+  LevelGeometry::Set(volume, level, image);
+  level->SetExtent(image->GetExtent());
+  this->ContourVolume(image, level, nullptr, nullptr, output);
 }
 
 //------------------------------------------------------------------------------
@@ -327,6 +367,7 @@ void vtkZFPContour::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ComputeNormals: " << (this->ComputeNormals ? "on\n" : "off\n");
   os << indent << "ComputeGradients: " << (this->ComputeGradients ? "on\n" : "off\n");
   os << indent << "ComputeScalars: " << (this->ComputeScalars ? "on\n" : "off\n");
+  os << indent << "Level: " << this->Level << "\n";
   os << indent << "BrickSize: " << this->BrickSize << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "NumberOfBricks: " << this->NumberOfBricks << "\n";

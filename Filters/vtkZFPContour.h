@@ -132,6 +132,16 @@ public:
 
   ///@{
   /**
+   * Level of detail whose surface is made; 0, the default, is the volume itself. A level that the
+   * volume does not have is an error. The surface of a level covers all of the stream, also the
+   * ghost samples of a piece of an image, and has no other arrays interpolated.
+   */
+  vtkSetClampMacro(Level, int, 0, 11);
+  vtkGetMacro(Level, int);
+  ///@}
+
+  ///@{
+  /**
    * Cells along the side of a brick, from 4 to 256, rounded down to a multiple of 4. Default 64.
    * Smaller bricks need less memory, and more of them can be skipped; larger ones overlap less, for
    * a brick is decoded with the samples around it.
@@ -176,11 +186,13 @@ private:
   std::vector<double> GetIsovalues();
   void ContourVolume(vtkImageData* input, vtkCompressedVolume* volume, vtkInformation* inputInfo,
     vtkInformation* outputInfo, vtkPolyData* output);
+  void ContourLevel(vtkImageData* input, vtkCompressedVolume* volume, vtkPolyData* output);
 
   vtkNew<vtkContourValues> ContourValues;
   vtkTypeBool ComputeNormals = true;
   vtkTypeBool ComputeGradients = false;
   vtkTypeBool ComputeScalars = true;
+  int Level = 0;
   int BrickSize = 64;
   int NumberOfThreads = 0;
   vtkIdType NumberOfBricks = 0;

@@ -26,7 +26,7 @@ from .io.arrays import as_image
 from .io.compressing import as_compressed
 from .io.files import DISK_FULL, atomic_path, check_bytes, check_output
 from .io.vtk_files import write_with
-from .options import CompressionOptions
+from .options import CompressionOptions, checked_levels
 from .vtkProgIsoFilters import vtkZFPContour
 
 
@@ -42,6 +42,7 @@ def contour(
     array: str | None = None,
     component: int = 0,
     mask_nan: bool = True,
+    level: int = 0,
     threads: int = 0,
     progress: Progress | None = None,
 ) -> vtkPolyData:
@@ -72,6 +73,8 @@ def contour(
         Component of that array; -1: the magnitude of its vectors.
     mask_nan : bool, default: True
         Whether NaN and infinite samples are hidden where a plain image is compressed first.
+    level : int, default: 0
+        Level of detail of a compressed volume whose surface is extracted; 0 is the volume itself.
     threads : int, default: 0
         Threads that decode and contour a compressed volume; 0 for one per core.
     progress : callable, optional
@@ -103,11 +106,17 @@ def contour(
     True
     """
     values = _isovalues(isovalues)
+    level = checked_levels(level, "level")
     image = as_image(image)
     compresses = rate is not None or tolerance is not None
     if compresses:
         options = CompressionOptions(
-            rate=rate, tolerance=tolerance, array=array, component=component, mask_nan=mask_nan
+            rate=rate,
+            tolerance=tolerance,
+            array=array,
+            component=component,
+            mask_nan=mask_nan,
+            levels=level,
         )
         image = as_compressed(image, options)
     if is_compressed(image):
@@ -116,8 +125,11 @@ def contour(
         if doubt is not None:
             warn_user(doubt)
         extractor = vtkZFPContour()
+        extractor.SetLevel(level)
         extractor.SetNumberOfThreads(threads)
         extractor.SetInputData(image)
+    elif level > 0:
+        raise ValueError(f"a plain image has no level {level}: compress it with levels, or give a rate")
     else:
         extractor = _plain_contour(image, array, component)
     for i, value in enumerate(values):

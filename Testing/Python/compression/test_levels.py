@@ -16,6 +16,7 @@ from helpers.images import (
     samples_of,
     without_checksums,
 )
+from helpers.surfaces import check_same_surface
 from progiso import vtkCompressedVolume, vtkImageZFPDecompress
 from progiso.bench.levels import CHOSEN, coarsened, interpolated
 
@@ -289,3 +290,32 @@ def test_what_cannot_be():
             progiso.compress(image, levels=wrong)
         with pytest.raises(error, match="level must be"):
             progiso.decompress(packed, level=wrong)
+
+
+def contour(image, isovalues, **options):
+    return progiso.contour(image, isovalues, gradients=True, **options)
+
+
+def test_contours_of_a_level_are_those_of_its_image(volume):
+    """Also of data of cells, whose levels lie half a coarse cell further."""
+    cells = blobs((70, 80, 90), 5).astype(np.float32)
+    of_cells = progiso.compress(make_image(cells, cells=True), rate=8, levels=11)
+    for compressed in (volume, of_cells):
+        for level in (0, 1):
+            surface = contour(compressed, [-0.2, 0.3], level=level)
+            expected = contour(progiso.decompress(compressed, level=level), [-0.2, 0.3])
+            assert surface.GetNumberOfPolys() > 1000
+            check_same_surface(surface, expected)
+    fine, coarse = (progiso.contour(volume, 0.3, level=level) for level in (0, 1))
+    assert coarse.GetNumberOfPolys() < 0.4 * fine.GetNumberOfPolys()
+
+
+def test_contours_of_levels_that_are_not_there(plain, volume):
+    with pytest.raises(RuntimeError, match="no level 3: the volume has 2 levels"):
+        progiso.contour(volume, 0.3, level=3)
+    with pytest.raises(ValueError, match="level must be from 0 to 11, got 12"):
+        progiso.contour(volume, 0.3, level=12)
+    with pytest.raises(ValueError, match="a plain image has no level 1: compress it"):
+        progiso.contour(make_image(plain), 0.3, level=1)
+    made = contour(make_image(plain), 0.3, level=1, rate=6)
+    check_same_surface(made, contour(volume, 0.3, level=1))
