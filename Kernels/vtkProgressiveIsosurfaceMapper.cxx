@@ -766,9 +766,8 @@ void vtkProgressiveIsosurfaceMapper::CountPixelsOfLevels(ImageStatistics& statis
   if (!IsEmpty(scene.View) && impl.Pipeline.GetStatus() && impl.Pipeline.IsStarted())
   {
     HitReadback hits = impl.Pipeline.GetHits();
-    const bool flagged = scene.View.NumberOfLevels > 1;
     const std::vector<float> depths =
-      flagged || scene.Translucent ? hits.ReadDepths() : std::vector<float>();
+      scene.View.NumberOfLevels > 1 ? hits.ReadDepths() : std::vector<float>();
     const PixelsOfLevels counts = ::CountLevels(scene, hits.ReadKeys(), depths);
     statistics.LevelPixels = counts.Pixels;
     statistics.UncertainFraction = counts.UncertainFraction;

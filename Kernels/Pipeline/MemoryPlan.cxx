@@ -120,8 +120,8 @@ MemoryPlan PlanMemory(
   const SceneNeeds whole = WithWholeVolume(scene);
   const std::int64_t wholeBytes = BytesBesideStream(whole);
   const std::int64_t leastCached = BytesBesideStream(WithCache(scene, LeastSlots(scene)));
-  const bool mayBeWhole = settings.DecodeWholeVolume && !scene.Levels &&
-    BytesPerSlot(whole) * whole.Slots <= limits.LargestBuffer;
+  const bool mayBeWhole =
+    settings.DecodeWholeVolume && BytesPerSlot(whole) * whole.Slots <= limits.LargestBuffer;
   plan.LeastBudget = mayBeWhole ? std::min(leastCached, wholeBytes) : leastCached;
   plan.Wanted = TakeShare(ChooseBudget(limits, settings, scene), settings, plan.LeastBudget);
   plan.Budget = std::max(plan.Wanted, plan.LeastBudget);

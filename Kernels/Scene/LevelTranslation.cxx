@@ -122,16 +122,21 @@ PixelsOfLevels CountLevels(const PipelineScene& scene, const std::vector<std::ui
   const std::vector<float>& depths)
 {
   const ViewGeometry& view = scene.View;
-  const bool flagged = view.NumberOfLevels > 1;
-  const std::vector<double> hits =
-    HitDepths(view, keys, scene.Translucent ? depths : std::vector<float>());
   PixelsOfLevels counts;
   counts.Pixels.assign(std::max(view.NumberOfLevels, 1), 0);
+  if (view.NumberOfLevels <= 1)
+  {
+    counts.Pixels[0] = static_cast<std::int64_t>(keys.size()) -
+      std::count(keys.begin(), keys.end(), glsl::NO_HIT);
+    return counts;
+  }
+  const std::vector<double> hits =
+    HitDepths(view, keys, scene.Translucent ? depths : std::vector<float>());
   std::int64_t uncertain = 0;
   for (std::size_t pixel = 0; pixel < keys.size(); ++pixel)
   {
     const bool isHit = keys[pixel] != glsl::NO_HIT;
-    const bool flag = flagged && std::signbit(depths[pixel]);
+    const bool flag = std::signbit(depths[pixel]);
     if (isHit)
     {
       ++counts.Pixels[scene.Conservative && flag ? 0 : LevelAtDepth(view, hits[pixel])];

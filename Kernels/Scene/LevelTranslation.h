@@ -33,8 +33,8 @@ struct PixelsOfLevels
   double UncertainFraction = 0.0;   ///< of the image's pixels
 };
 
-/// Counts what pixels show, by their keys and depths as HitReadback reads them. Depths are empty of
-/// an opaque image without levels.
+/// Counts what pixels show, by their keys and depths as HitReadback reads them. Depths are
+/// not looked at without levels.
 PixelsOfLevels CountLevels(const PipelineScene& scene, const std::vector<std::uint32_t>& keys,
   const std::vector<float>& depths);
 

@@ -58,10 +58,11 @@ SceneNeeds WithLevels(SceneNeeds needs, bool conservative)
 std::vector<SceneNeeds> Scenes()
 {
   std::vector<SceneNeeds> scenes;
-  const SceneNeeds cached = SmallScene(true);
   for (const bool conservative : { false, true })
   {
-    for (const SceneNeeds& needs : { cached, WithAllFeatures(cached), Translucent(cached) })
+    const SceneNeeds cached = SmallScene(true), decoded = SmallScene(false);
+    for (const SceneNeeds& needs : { cached, WithAllFeatures(cached), Translucent(cached), decoded,
+           WithAllFeatures(decoded) })
     {
       scenes.push_back(WithLevels(needs, conservative));
     }

@@ -16,6 +16,7 @@ uint SlotOf(ivec3 block)
 }
 
 void FindSlots(ivec3 first, ivec3 reach) {}
+void ExchangeSlots() {}
 
 bool LacksSlots()
 {
@@ -34,13 +35,16 @@ uint FoundSlot(ivec3 first, ivec3 block)
 
 uvec3 StridesOfBlocks()
 {
-  return uint(SAMPLES_PER_BLOCK) * uvec3(1, volume.Blocks.x, volume.Blocks.x * volume.Blocks.y);
+  uvec2 row = uvec2(LEVEL_GRID.Blocks.xy);
+  return uint(SAMPLES_PER_BLOCK) * uvec3(1u, row.x, row.x * row.y);
 }
 
-// What planes of samples on x, y and z add to the index of a sample.
+// What planes of samples on x, y and z add to the index of a sample; where the level begins counts
+// with those on x.
 uvec3 SampleOffsets(ivec3 planes)
 {
-  return PlaceInBlock(planes) * STRIDES_IN_BLOCK + uvec3(BlockOf(planes)) * StridesOfBlocks();
+  return PlaceInBlock(planes) * STRIDES_IN_BLOCK + uvec3(BlockOf(planes)) * StridesOfBlocks() +
+    uvec3(uint(SAMPLES_PER_BLOCK) * FirstBlock(), 0u, 0u);
 }
 
 // Of the next planes, from those of `planes`.

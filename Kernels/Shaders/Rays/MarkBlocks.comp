@@ -128,7 +128,7 @@ void StoreMarks(uint macrocell, uvec2 marks)
 #else
 void StoreMarks(uint macrocell, uvec2 marks)
 {
-  blockMarks[macrocell] = marks;
+  blockMarks[MarksIndex(macrocell, LEVEL_MARKS)] = marks;
 }
 #endif
 

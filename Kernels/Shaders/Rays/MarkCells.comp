@@ -56,7 +56,7 @@ uint InLayer(uint faces)
 uvec2 CrossedCells(ivec3 block, int isovalue)
 {
   ivec3 first = BLOCK_SIDE * block;
-  ivec3 last = volume.Samples - 1;
+  ivec3 last = LEVEL_GRID.Samples - 1;
   uvec2 crossed = uvec2(0u);
   Faces lower = FacesOf(InsideInPlane(first, last, 0, isovalue));
   for (int z = 0; z < BLOCK_SIDE; ++z)
@@ -100,7 +100,7 @@ void main()
   uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
   for (uint macrocell = FoldedGroup(); macrocell < volume.NumberOfMacrocells; macrocell += groups)
   {
-    uvec2 marked = blockMarks[macrocell];
+    uvec2 marked = blockMarks[MarksIndex(macrocell, LEVEL_MARKS)];
     if (marked == uvec2(0u)) // the same in the whole group
     {
       continue;
@@ -112,6 +112,7 @@ void main()
     barrier();
     if (((local < 32u ? marked.x : marked.y) >> (local & 31u) & 1u) != 0u)
     {
+      EnterLevelOfMacrocell(macrocell);
       ivec3 block = MACROCELL_SIDE * MacrocellCoordinates(macrocell) + BlockInMacrocell(local);
       uvec2 marks = MarksOf(block, RangeOf(macrocell, local));
       cellMarks[BlockIndex(block)] = marks;
@@ -123,7 +124,7 @@ void main()
     barrier();
     if (local == 0u)
     {
-      blockMarks[macrocell] = uvec2(groupMarks[0], groupMarks[1]);
+      blockMarks[MarksIndex(macrocell, LEVEL_MARKS)] = uvec2(groupMarks[0], groupMarks[1]);
     }
     barrier();
   }

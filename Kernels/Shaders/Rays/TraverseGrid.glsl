@@ -168,7 +168,7 @@ GridCursor CursorAt(Ray ray, ivec3 macrocell)
   at.Marks = blockMarks[MarksIndex(index, ray.Blends ? BLEND_MARKS : LEVEL_MARKS)];
   at.Original = level > 0 || ray.Blends ? blockMarks[MarksIndex(index, ORIGINAL_MARKS)] : uvec2(0u);
 #else
-  at.Marks = blockMarks[index];
+  at.Marks = blockMarks[MarksIndex(index, LEVEL_MARKS)];
 #endif
   return at;
 }

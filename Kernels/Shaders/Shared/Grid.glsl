@@ -36,16 +36,6 @@ void EnterLevelOfMacrocell(uint macrocell)
   }
 }
 
-// What a macrocell's marks are about, where levels have three: see MarkBlocks.comp.
-const uint LEVEL_MARKS = 0u;
-const uint BLEND_MARKS = 1u;
-const uint ORIGINAL_MARKS = 2u;
-
-uint MarksIndex(uint macrocell, uint kind)
-{
-  return 3u * macrocell + kind;
-}
-
 // How often the axes have every second sample of the volume itself.
 ivec3 Halvings()
 {
@@ -73,6 +63,20 @@ uint FirstMacrocell()
 void EnterLevelOf(uint block) {}
 void EnterLevelOfMacrocell(uint macrocell) {}
 #endif
+
+// What a macrocell's marks are about: see MarkBlocks.comp. Without levels there is the first kind.
+const uint LEVEL_MARKS = 0u;
+const uint BLEND_MARKS = 1u;
+const uint ORIGINAL_MARKS = 2u;
+
+uint MarksIndex(uint macrocell, uint kind)
+{
+#ifdef LEVELS
+  return 3u * macrocell + kind;
+#else
+  return macrocell;
+#endif
+}
 
 // Block that holds a sample, or a cell whose lowest corner is this sample.
 ivec3 BlockOf(ivec3 voxel)

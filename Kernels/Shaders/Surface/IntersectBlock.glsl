@@ -67,30 +67,52 @@ uvec2 KnownCells(ivec3 block)
 }
 
 #ifdef LEVELS
-// What the next level has around a cell, where it blends in: samples and hidden cells of the coarse
-// cell that holds it, whose slots are aside.
-struct CoarseCells
+// Of the next level, where it blends in: its slots are aside.
+void TakeNextLevel()
+{
+  ++level;
+  ExchangeSlots();
+}
+
+void TakeBackLevel()
+{
+  ExchangeSlots();
+  --level;
+}
+
+uvec2 HiddenCellsOf(ivec3 block)
+{
+#ifdef HAS_HIDDEN_CELLS
+  return HiddenInSlot(FoundSlot(block, block));
+#else
+  return uvec2(0u);
+#endif
+}
+
+// Where two levels blend: the hidden cells of a block, and of the coarse block that holds it.
+struct BlendedCells
 {
   ivec3 Halved;
   uvec2 Hidden;
+  uvec2 CoarseHidden;
 };
 
-CoarseCells FindCoarseCells(ivec3 block)
+BlendedCells FindBlendedCells(ivec3 block)
 {
-  CoarseCells coarse = CoarseCells(HalvedByNext(), uvec2(0u));
-#ifdef HAS_HIDDEN_CELLS
-  ExchangeSlots();
-  coarse.Hidden = HiddenInSlot(FoundSlot(block >> coarse.Halved, block >> coarse.Halved));
-  ExchangeSlots();
-#endif
-  return coarse;
+  BlendedCells cells;
+  cells.Halved = HalvedByNext();
+  cells.Hidden = HiddenCellsOf(block);
+  TakeNextLevel();
+  cells.CoarseHidden = HiddenCellsOf(block >> cells.Halved);
+  TakeBackLevel();
+  return cells;
 }
 
-Corners LoadCoarseCorners(CoarseCells coarse, ivec3 cell)
+Corners LoadCoarseCorners(ivec3 coarseCell)
 {
-  ExchangeSlots();
-  Corners values = LoadCorners(cell >> coarse.Halved);
-  ExchangeSlots();
+  TakeNextLevel();
+  Corners values = LoadCorners(coarseCell);
+  TakeBackLevel();
   return values;
 }
 
@@ -116,12 +138,13 @@ bool BlendHoldsSurface(Corners w, Corners v)
 #endif
 }
 
-bool BlendMayHit(uvec2 known, CoarseCells coarse, ivec3 cell, inout Corners w, inout Corners v)
+bool BlendMayHit(BlendedCells cells, ivec3 cell, inout Corners w, inout Corners v)
 {
+  ivec3 coarse = cell >> cells.Halved;
   w = LoadCorners(cell);
-  v = LoadCoarseCorners(coarse, cell);
-  return BlendHoldsSurface(w, v) && !HoldsCell(known, cell) &&
-    !HoldsCell(coarse.Hidden, cell >> coarse.Halved);
+  v = LoadCoarseCorners(coarse);
+  return BlendHoldsSurface(w, v) && !HoldsCell(cells.Hidden, cell) &&
+    !HoldsCell(cells.CoarseHidden, coarse);
 }
 #endif
 
@@ -332,11 +355,11 @@ bool IntersectBlock(Ray ray, GridPlace place, BlockCrossing crossing, out Hit hi
   uvec2 known = KnownCells(place.Block);
 #ifdef LEVELS
   Ray coarseRay = ray;
-  CoarseCells coarse = CoarseCells(ivec3(0), uvec2(0u));
+  BlendedCells blended = BlendedCells(ivec3(0), uvec2(0u), uvec2(0u));
   if (ray.Blends)
   {
     coarseRay = RayInNext(ray);
-    coarse = FindCoarseCells(place.Block);
+    blended = FindBlendedCells(place.Block);
   }
 #endif
   for (int tested = 0; tested < 16; ++tested) // a ray crosses at most 10 cells of 4^3
@@ -351,7 +374,7 @@ bool IntersectBlock(Ray ray, GridPlace place, BlockCrossing crossing, out Hit hi
       t1 = SmallestOf(at.Exits);
       last = !IsLess(t1, end);
 #ifdef LEVELS
-      crossed = ray.Blends ? BlendMayHit(known, coarse, at.Cell, w, v) : MayHit(known, at.Cell, w);
+      crossed = ray.Blends ? BlendMayHit(blended, at.Cell, w, v) : MayHit(known, at.Cell, w);
 #else
       crossed = MayHit(known, at.Cell, w);
 #endif
