@@ -61,14 +61,17 @@ def test_off_is_what_it_was_without_levels(volume, view):
     assert images[1].statistics()["memory"] == images[0].statistics()["memory"]
 
 
+@pytest.mark.parametrize("settings", [{}, CACHED])
 @pytest.mark.parametrize("parallel", [False, True])
-def test_near_it_is_exact(volume, view, parallel):
+def test_near_it_is_exact(volume, view, parallel, settings):
     """Where samples are farther apart than pixels, the volume itself is drawn, bit by bit."""
     camera, _ = view
     if parallel:
         camera = dataclasses.replace(camera, parallel_scale=60.0)
     exact = Scene(volume, 0.1, camera, lit=True)
-    near = Scene(volume, 0.1, camera, lit=True, LevelOfDetail=ON, PixelTolerance=0.0625)
+    near = Scene(
+        volume, 0.1, camera, lit=True, LevelOfDetail=ON, PixelTolerance=0.0625, **settings
+    )
     assert near.depth().tobytes() == exact.depth().tobytes()
     assert near.picture().tobytes() == exact.picture().tobytes()
     assert levels_of(near)[1:] == [0, 0, 0] and doubts(near) == 0
@@ -89,12 +92,13 @@ def test_the_work_is_divided_in_any_way(volume, view, mode, isovalues, parallel)
     expected = None
     for settings in (
         {},
-        {"SpeculationLimit": 1},
-        {"SpeculationLimit": 7, "PixelsPerStraggler": 1},
-        {"PixelsPerStraggler": 4},
+        CACHED,
+        {"SpeculationLimit": 1, **CACHED},
+        {"SpeculationLimit": 7, "PixelsPerStraggler": 1, **CACHED},
+        {"PixelsPerStraggler": 4, **CACHED},
         {"MemoryBudget": least},
         {"MemoryBudget": least + (least >> 3), "SpeculationLimit": 3},
-        {"MaximumPassesPerRender": 1},
+        {"MaximumPassesPerRender": 1, **CACHED},
         {"LargestBuffer": 1 << 20},
     ):
         scene = Scene(volume, 0.1, camera, lit=True, **on, **settings)
@@ -292,7 +296,7 @@ def test_memory_follows_the_pixels():
         field = sum(np.sin(axes[i]) * np.cos(axes[(i + 1) % 3]) for i in range(3))
         volume = progiso.compress(make_image(field, spacing=(1 / size,) * 3), rate=8, levels=11)
         camera = orbit(reference_volume(volume), 2, 5, distance=2.0)
-        scene = Scene(volume, 0.0, camera, (80, 60), lit=True, LevelOfDetail=ON)
+        scene = Scene(volume, 0.0, camera, (80, 60), lit=True, LevelOfDetail=ON, **CACHED)
         scene.render()
         blocks.append(sum(each["decoded_blocks"] for each in scene.statistics()["passes"]))
         assert shape == field.shape
