@@ -322,7 +322,7 @@ def _look_around(
         if place is camera_inside:
             seen.SetClippingRange(CLIPPING_INSIDE)
         if share is not None:
-            view.mapper.SetMemoryBudget(int(share * _least_budget(view)))
+            view.mapper.SetMemoryBudget(int(share * least_budget(view)))
         count.slowest_ms = max(count.slowest_ms, view.render())
         missed, invented, judged = slipped(view.depth(), field, caster.Camera.from_vtk(seen))
         wrong = missed | invented
@@ -336,7 +336,7 @@ def _look_around(
     view.close()
 
 
-def _least_budget(view: Isosurface) -> int:
+def least_budget(view: Isosurface) -> int:
     """Return the least memory budget that a view can work with, as its last image says."""
     if not view.statistics()["passes"]:
         view.render()

@@ -24,7 +24,11 @@ _ABOUT = """\
   certain are more than a thousandth of a voxel apart; it must stay between them. *∞* is a hit where
   none is possible, or a miss where one is certain. In *degrees*: between normals. In *rays*:
   those that slip through a closed surface, or hit one where there is nothing. In *faults*: 1
-  where the one clear error that is due does not come.
+  where the one clear error that is due does not come. With levels of detail voxels are those of
+  the level in which a ray hits, and the caster knows the law of levels. In *voxels of the level*:
+  how far spheres are displaced in the mean, and how far behind the exact surface a conservative
+  image has a hit. In *footprints*, pixels' widths at their depth times the tolerance: how far a
+  depth jumps from frame to frame, its change in the exact image taken off.
 - **limit** is what is granted: of depths 10⁻⁴ voxels, the rounding of a float32 distance, and 2⁻²⁹
   voxels of the axis with the largest spacing, in whose steps rays are made.
 - **verdict**: *ok*, *failed*, or *limit* where the limit is the bound of something that cannot be

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -59,6 +59,8 @@ class Picture(Isosurface):
         The prop's matrix.
     clip : tuple of float, optional
         Distances of the clipping planes; by default they stand around the volume.
+    pixel_tolerance : float, optional
+        How many pixels samples may be apart, to draw with levels of detail.
     settings
         Of `Isosurface`.
     """
@@ -71,10 +73,14 @@ class Picture(Isosurface):
         *,
         user: np.ndarray | None = None,
         clip: tuple[float, float] | None = None,
+        pixel_tolerance: float | None = None,
         **settings: Any,
     ) -> None:
         super().__init__(image, isovalue, size, **settings)
         self._clip = clip
+        if pixel_tolerance is not None:
+            self.mapper.SetLevelOfDetailToOn()
+            self.mapper.SetPixelTolerance(pixel_tolerance)
         if user is not None:
             matrix = vtkMatrix4x4()
             matrix.DeepCopy(np.asarray(user, float).ravel())
@@ -153,25 +159,68 @@ def check_depths(
     """
     size = size or settings.size
     view = Picture(image, isovalue, size, user=user, **options)
-    try:
-        milliseconds = view.time(camera or orbit_camera(view.prop, 1, 4), settings.repeat)
-        depth, (eye, clip) = view.depth(), view.rays()
-        complete, errors = view.converged(), view.mapper.GetNumberOfGLErrors()
-    finally:
-        view.close()
+    shot = shoot(view, camera, settings.repeat)
     volume = volume or decoded(image, user)
-    pixels = None
+    pixels, depth = None, shot.depth
     if sample is not None:
         pixels = np.sort(np.random.default_rng(1).integers(0, depth.size, sample))
         depth = depth.ravel()[pixels]
     level = isovalue if level is None else level
     expected = caster.cast(
-        volume, level, eye, size, slack=tolerances.SLACK, clip=clip, pixels=pixels
+        volume, level, shot.eye, size, slack=tolerances.SLACK, clip=shot.clip, pixels=pixels
     )
-    found = compare(depth, expected)
+    return judge(replace(shot, depth=depth), expected, grazing=grazing, hits=hits, note=note)
+
+
+@dataclass(frozen=True)
+class Shot:
+    """Holds an image's depths, and what it takes to judge them.
+
+    Attributes
+    ----------
+    depth : numpy.ndarray
+    eye : progiso.oracle.caster.Camera
+    clip : tuple of float
+        Distances of the clipping planes.
+    milliseconds : float
+    defect : str
+        What is wrong with the image as a whole; empty where nothing is.
+    """
+
+    depth: np.ndarray
+    eye: caster.Camera
+    clip: tuple[float, float]
+    milliseconds: float
+    defect: str
+
+
+def shoot(view: Picture, camera: Camera | None, repeat: int) -> Shot:
+    """Render and time an image, from one of the orbit's cameras by default, and close the view."""
+    try:
+        milliseconds = view.time(camera or orbit_camera(view.prop, 1, 4), repeat)
+        depth, (eye, clip) = view.depth(), view.rays()
+        complete, errors = view.converged(), view.mapper.GetNumberOfGLErrors()
+    finally:
+        view.close()
     defects = (
         "" if complete else "the image is not complete",
         f"{errors} OpenGL errors" if errors else "",
+    )
+    return Shot(depth, eye, clip, milliseconds, "; ".join(filter(None, defects)))
+
+
+def judge(
+    shot: Shot,
+    expected: caster.Cast,
+    *,
+    grazing: float = tolerances.GRAZING_FRACTION,
+    hits: bool = True,
+    note: str = "",
+) -> Outcome:
+    """Hold an image's depths against the caster's; `grazing`, `hits`: see `check_depths`."""
+    found = compare(shot.depth, expected)
+    defects = (
+        shot.defect,
         f"{found.grazing:.1%} of the rays graze" if found.grazing > grazing else "",
         _wrong_hits(found),
         "" if (found.hits > 0) == hits else f"{found.hits} hits",
@@ -179,7 +228,7 @@ def check_depths(
     error, limit = found.worst
     # beyond what is asked of depths, within what their float32 can tell
     rounded = bool(error > tolerances.DEPTH_VOXELS)
-    far = np.max(np.where(np.isfinite(depth), depth, 0) * expected.voxels)
+    far = np.max(np.where(np.isfinite(shot.depth), shot.depth, 0) * expected.voxels)
     distances = f"; float32 rounds distances of {far:.2g} voxels" if rounded else ""
     place = float(tolerances.PLACE_VOXELS * expected.spacing * np.max(expected.voxels))
     if place > tolerances.DEPTH_VOXELS:
@@ -187,7 +236,7 @@ def check_depths(
     return Outcome(
         error,
         limit,
-        milliseconds,
+        shot.milliseconds,
         note="; ".join(filter(None, (note, f"{found.hits} hits{distances}{_grazing(found)}"))),
         documented=rounded,
         defect="; ".join(filter(None, defects)),

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from typing import Any
 
-from . import compression, cracks, geometry, normals, stiff, values
+from . import compression, cracks, geometry, level_cracks, levels, normals, stiff, values
 from .case import Case, Settings, row_of
 
 #: Called with number, section and case before each.
@@ -20,6 +20,7 @@ SECTIONS = {
     "Geometry": geometry.CASES,
     "Compression": compression.CASES,
     "Cracks": cracks.CASES,
+    "Levels of detail": levels.CASES + level_cracks.CASES,
 }
 
 

@@ -10,8 +10,8 @@ import pytest
 from helpers.programs import call_progiso
 from progiso.cli import main
 from progiso.measure import agreement
-from progiso.oracle.caster import Cast
-from progiso.verify import command, cracks, scene
+from progiso.oracle.caster import Camera, Cast
+from progiso.verify import command, cracks, level_cracks, levels, scene
 from progiso.verify.case import FAILED, LIMIT, OK, Case, Outcome, Settings, row_of, worst_of
 from progiso.verify.table import SECTIONS, cases
 
@@ -195,6 +195,108 @@ def test_rays_through_a_hole_fail(monkeypatch):
     )
     rays = int(re.fullmatch(r"of (\d+) rays", row["unit"])[1])
     assert rays >= 10_000 and row["error"] <= rays
+
+
+# --- levels of detail -----------------------------------------------------------------------------
+
+
+def row_named(text):
+    ((section, case),) = cases(containing=text)
+    return row_of(section, case, Settings((64, 48), 1, 10_000))
+
+
+def test_another_law_of_levels_fails(monkeypatch):
+    """The caster goes over to the next level a hundredth too late."""
+    cast = levels.levels.cast
+    monkeypatch.setattr(
+        levels.levels,
+        "cast",
+        lambda *given, tolerance, **more: cast(*given, tolerance=0.99 * tolerance, **more),
+    )
+    row = row_named("levels, spacing 0.7")
+    assert row["verdict"] == FAILED and row["error"] > 10 * row["limit"]
+
+
+def test_levels_that_nobody_sees_fail(monkeypatch):
+    monkeypatch.setattr(levels, "_SEEN", 0.9)
+    row = row_named("levels, spacing 0.7")
+    assert row["verdict"] == FAILED and "levels [1] are hardly seen" in row["note"]
+
+
+def test_a_displaced_level_fails(monkeypatch):
+    """[1 2 1]/4 on top of the filter moves surfaces inwards."""
+    octant = levels._octant
+
+    def filtered(*given):
+        values, centre = octant(*given)
+        for axis in range(3):
+            inner = np.moveaxis(values, axis, 0)
+            inner[1:-1] = 0.5 * inner[1:-1] + 0.25 * (inner[2:] + inner[:-2])
+        return values, centre
+
+    monkeypatch.setattr(levels, "_octant", filtered)
+    row = row_named("voxels of level 1")
+    assert row["verdict"] == FAILED and row["limit"] < row["error"] < 2 * row["limit"]
+
+
+def test_a_jump_between_levels_fails(monkeypatch):
+    """From frame to frame levels change by a tenth, as if they went over to the next at once."""
+    monkeypatch.setattr(levels, "_STEPS", (1.0, 1.1))
+    row = row_named("rays held still")
+    assert row["verdict"] == FAILED and row["limit"] < row["error"] < 1
+
+
+def test_a_lost_sheet_fails(monkeypatch):
+    """The picture is not conservative."""
+    shoot = levels.shoot
+
+    def shoot_on(view, *given):
+        view.mapper.SetLevelOfDetailToOn()
+        return shoot(view, *given)
+
+    monkeypatch.setattr(levels, "shoot", shoot_on)
+    row = row_named("conservative: sheets")
+    assert row["verdict"] == FAILED and row["error"] is None
+    assert re.search(r"^\d+ rays miss", row["note"])
+
+
+@pytest.mark.parametrize("kind", ["plane", "sphere"])
+def test_rays_that_slip_through_levels_fail(kind, monkeypatch):
+    """A hole of some voxels: rays pass that must hit, or hit its rim, where no surface is."""
+    compress = level_cracks.with_levels
+
+    def opened(values):
+        values = values.copy()
+        middle = tuple(slice(n // 2 - 12, n // 2 + 12) for n in values.shape)
+        values[middle] = -10
+        return compress(values)
+
+    monkeypatch.setattr(level_cracks, "with_levels", opened)
+    row = row_named(f"levels: no crack in a {kind}")
+    assert row["verdict"] == FAILED and row["error"] > 100 and "first wrong: row" in row["note"]
+
+
+def test_judging_rays_at_a_plane():
+    """A plane halfway, seen at a right angle and from within: each kind of wrong ray is found."""
+    shape, plane = (81, 81, 81), level_cracks.Surface(np.full(3, 40.0), np.array([0.0, 0.0, 1.0]))
+    eye = Camera((40.0, 40.0, -60.0), (40.0, 40.0, 40.0), parallel_scale=50.0)
+    origins, directions = eye.rays((20, 20))
+    inside = ((origins[:, :2] > 0) & (origins[:, :2] < 80)).all(axis=1).reshape(20, 20)
+    depth = np.where(inside, 100.0, np.inf)
+
+    def judge(depth, clip=(0.0, 1e3)):
+        return level_cracks.judge_rays(depth, plane, shape, eye, clip, 1.0, 4)
+
+    wrong, judged, worst = judge(depth)
+    assert not wrong.any() and judged.all() and worst < 1e-6
+    missing, invented, early = depth.copy(), depth.copy(), depth.copy()
+    missing[10, 10], invented[0, 0], early[8, 9] = np.inf, 100.0, 99.99
+    for changed, place in ((missing, (10, 10)), (invented, (0, 0)), (early, (8, 9))):
+        assert np.argwhere(judge(changed)[0]).tolist() == [list(place)]
+    # rays that end before it, or begin behind it, must not hit
+    for clip in ((0.0, 90.0), (110.0, 1e3)):
+        assert (judge(depth, clip)[0] == inside).all()
+        assert not judge(np.full((20, 20), np.inf), clip)[0].any()
 
 
 @pytest.mark.parametrize("rays", ["0", "many", "-1e6", "nan", "1e300"])
