@@ -161,9 +161,9 @@ def measure_bounds(field: Field, settings: Settings) -> dict[str, Any]:
         ``isovalue``, ``exact`` (what depths are held against: ``caster``, or ``Off``), and
         ``views``, each with ``view``, ``hits`` (of the exact depths) and ``rows``, one a way:
         ``way``, ``distance`` (VTK's), ``ms``, `depth_errors`'s figures and ``color``, the
-        `color_error`; of ProgIso also ``blocks`` (decoded for the first image), ``levels``
-        ({level: pixels}) and ``uncertain`` (a fraction of the pixels). A row with ``failed`` has
-        nothing else. With ``left_out`` there is no image.
+        `color_error`; of ProgIso also ``blocks`` (that a first image decodes as rays meet them),
+        ``levels`` ({level: pixels}) and ``uncertain`` (a fraction of the pixels). A row with
+        ``failed`` has nothing else. With ``left_out`` there is no image.
     """
     return of_one_image(field, settings, lambda: _Measurement(field, settings).run())
 
@@ -247,9 +247,15 @@ class _Measurement:
     # ---- ways
 
     def _ours(
-        self, level_of_detail: int, tolerance: float, size: tuple[int, int] | None = None
+        self,
+        level_of_detail: int,
+        tolerance: float,
+        *,
+        size: tuple[int, int] | None = None,
+        cached: bool = False,
     ) -> Isosurface:
-        view = Isosurface(self._volume, self._isovalue, size or self._settings.size)
+        size = size or self._settings.size
+        view = Isosurface(self._volume, self._isovalue, size, cached=cached)
         view.mapper.SetLitLikeMeshes(False)  # as VTK lights volumes
         view.mapper.SetLevelOfDetail(level_of_detail)
         view.mapper.SetPixelTolerance(tolerance)
@@ -257,16 +263,16 @@ class _Measurement:
 
     def _our_row(self, way: str, image: _Image) -> tuple[dict[str, Any], Array | None]:
         """Measure a way of ProgIso; return its row and its picture."""
-        view = self._ours(*OURS[way])
+        view = self._ours(*OURS[way], cached=True)
         view.render_from(image.camera)
         first = view.statistics()
-        decoded = sum(one["decoded_blocks"] for one in first["passes"])
+        view.close()
         about = {
-            "blocks": decoded + first["loading"]["decoded_blocks"],
+            "blocks": sum(one["decoded_blocks"] for one in first["passes"]),
             "levels": {str(level): count for level, count in first["levels"].items()},
             "uncertain": first["uncertain"],
         }
-        row, picture = self._row(view, image)
+        row, picture = self._row(self._ours(*OURS[way]), image)
         return {**row, **about}, picture
 
     def _their_row(self, way: str, image: _Image) -> tuple[dict[str, Any], Array | None]:

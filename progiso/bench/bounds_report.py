@@ -8,13 +8,15 @@ from ..measure.text import count, milliseconds, number, percent, pixels, table
 from .bounds import REFERENCE, VIEWS
 from .latency import MOVE
 
+_PARTS = ", ".join(f"{100 * part:.0f} % ({view})" for view, part in VIEWS.items())
+
 _ABOUT = f"""\
 *Off* draws the volume itself, *On* each part of the surface from the coarsest level whose samples
 are at most a pixel apart there (or as many pixels as it says), *Conservative* likewise, but looks
 at the volume itself where a level may hide something. VTK's isosurface mapper takes samples so many
 voxels apart along a ray. It draws the decompressed volume, in the same material and light, but with
-normals of its own, from differences of samples a voxel away. In the {", ".join(VIEWS)} view the
-volume covers {", ".join(f"{part:.0%}" for part in VIEWS.values())} of the image's height."""
+normals of its own, from differences of samples a voxel away. The volume covers
+{_PARTS} of the image's height."""
 
 _COLUMNS = f"""\
 *Depth error*: how far off depths are where both hit, in footprints of a pixel, which are the
@@ -22,9 +24,10 @@ distance of neighbouring pixels' rays at that depth. *Missed* and *invented*: pi
 where there should be one, and the other way round, in parts of the hits that there should be.
 *Colour error*: root mean square of red, green and blue, 0 to 255, where anything is shown, against
 {REFERENCE}×{REFERENCE} samples a pixel of *Off*, averaged. *Time*: of the view after a move by
-{MOVE:g}°, both views having been rendered before, median. *Blocks*: decoded for the first image;
-small volumes without levels are decoded whole. *Levels*: pixels whose surface is drawn from each,
-level 0 being the volume. *Uncertain*: pixels before whose surface a level may hide something."""
+{MOVE:g}°, both views having been rendered before, median. *Blocks*: what a first image decodes as
+rays meet them (times are of volumes that are decoded whole, where they are small). *Levels*: pixels
+whose surface is drawn from each, level 0 being the volume. *Uncertain*: pixels before whose surface
+a level may hide something."""
 
 _EXACT = {
     "caster": "a double-precision caster over the decompressed samples",

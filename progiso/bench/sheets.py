@@ -40,7 +40,7 @@ def draw_sheet(pictures: dict[str, Array], path: Path) -> None:
     differences = [AMPLIFIED * np.abs(picture - cut[-1]) for picture in cut[:-1]]
     scale = max(1, round(_LEAST / max(cut[0].shape[:2])))
     height, width = (scale * side for side in cut[0].shape[:2])
-    total = (2 * (height + _LINE) + _LINE, len(names) * (width + _GAP) - _GAP)
+    total = (2 * (height + _LINE), len(names) * (width + _GAP) - _GAP)
     canvas = np.full((*total, 3), 255, np.uint8)
     figure = Figure(figsize=(total[1] / _DPI, total[0] / _DPI), dpi=_DPI)
     tops = (_LINE, height + 2 * _LINE)
