@@ -54,6 +54,7 @@ void vtkPVIsosurfaceInformation::Clear()
   this->PassMilliseconds.clear();
   this->PassCompleted.clear();
   this->LevelPixels.clear();
+  this->UncertainFraction = 0.0;
 }
 
 //------------------------------------------------------------------------------
@@ -107,7 +108,7 @@ void vtkPVIsosurfaceInformation::AddBlock(vtkProgressiveIsosurfaceMapper* mapper
     {
       pixels.push_back(static_cast<double>(statistics->GetLevelPixels(level)));
     }
-    this->AddLevels(pixels);
+    this->AddLevels(pixels, statistics->GetUncertainFraction());
   }
 }
 
@@ -137,7 +138,7 @@ void vtkPVIsosurfaceInformation::AddInformation(vtkPVInformation* information)
   this->MemoryBudget += other->MemoryBudget;
   this->JoinPasses(other->PassMilliseconds, other->PassCompleted,
     [](double a, double b) { return std::max(a, b); });
-  this->AddLevels(other->LevelPixels);
+  this->AddLevels(other->LevelPixels, other->UncertainFraction);
 }
 
 //------------------------------------------------------------------------------
@@ -162,11 +163,12 @@ void vtkPVIsosurfaceInformation::JoinPasses(const std::vector<double>& milliseco
 }
 
 //------------------------------------------------------------------------------
-void vtkPVIsosurfaceInformation::AddLevels(const std::vector<double>& pixels)
+void vtkPVIsosurfaceInformation::AddLevels(const std::vector<double>& pixels, double uncertain)
 {
   this->LevelPixels.resize(std::max(this->LevelPixels.size(), pixels.size()));
   std::transform(pixels.begin(), pixels.end(), this->LevelPixels.begin(), this->LevelPixels.begin(),
     std::plus<double>());
+  this->UncertainFraction = std::max(this->UncertainFraction, uncertain);
 }
 
 //------------------------------------------------------------------------------
@@ -175,8 +177,8 @@ void vtkPVIsosurfaceInformation::CopyToStream(vtkClientServerStream* stream)
   stream->Reset();
   *stream << vtkClientServerStream::Reply << this->NumberOfProcesses << this->CompletedFraction
           << this->TotalMilliseconds << this->GPUBytes << this->CompressedBytes
-          << this->MemoryBudget << this->NumberOfErrors << this->NumberOfWarnings
-          << this->Error.c_str() << this->Warning.c_str();
+          << this->MemoryBudget << this->UncertainFraction << this->NumberOfErrors
+          << this->NumberOfWarnings << this->Error.c_str() << this->Warning.c_str();
   Send(*stream, this->PassMilliseconds);
   Send(*stream, this->PassCompleted);
   Send(*stream, this->LevelPixels);
@@ -190,7 +192,7 @@ void vtkPVIsosurfaceInformation::CopyFromStream(const vtkClientServerStream* str
   int argument = 0;
   bool good = stream->GetArgument(0, argument++, &this->NumberOfProcesses) != 0;
   for (double* value : { &this->CompletedFraction, &this->TotalMilliseconds, &this->GPUBytes,
-         &this->CompressedBytes, &this->MemoryBudget })
+         &this->CompressedBytes, &this->MemoryBudget, &this->UncertainFraction })
   {
     good = good && stream->GetArgument(0, argument++, value);
   }
@@ -230,4 +232,5 @@ void vtkPVIsosurfaceInformation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "GPUBytes: " << this->GPUBytes << "\n";
   os << indent << "CompressedBytes: " << this->CompressedBytes << "\n";
   os << indent << "MemoryBudget: " << this->MemoryBudget << "\n";
+  os << indent << "UncertainFraction: " << this->UncertainFraction << "\n";
 }

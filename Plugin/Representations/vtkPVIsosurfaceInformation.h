@@ -70,6 +70,11 @@ public:
   /// is off.
   const std::vector<double>& GetLevelPixels() const { return this->LevelPixels; }
 
+  /// Fraction of the pixels that a piece or block covers, 0 … 1, where levels of detail may hide
+  /// something: see vtkProgressiveIsosurfaceStatistics::GetUncertainFraction(). Of several, that
+  /// with the most counts.
+  vtkGetMacro(UncertainFraction, double);
+
 protected:
   vtkPVIsosurfaceInformation() = default;
   ~vtkPVIsosurfaceInformation() override = default;
@@ -80,7 +85,7 @@ private:
   /// Joins the passes of two, each pass by a function of their milliseconds.
   void JoinPasses(const std::vector<double>& milliseconds, const std::vector<double>& completed,
     double (*join)(double, double));
-  void AddLevels(const std::vector<double>& pixels);
+  void AddLevels(const std::vector<double>& pixels, double uncertain);
 
   std::string Error;
   std::string Warning;
@@ -95,6 +100,7 @@ private:
   std::vector<double> PassMilliseconds;
   std::vector<double> PassCompleted;
   std::vector<double> LevelPixels;
+  double UncertainFraction = 0.0;
 
   vtkPVIsosurfaceInformation(const vtkPVIsosurfaceInformation&) = delete;
   void operator=(const vtkPVIsosurfaceInformation&) = delete;

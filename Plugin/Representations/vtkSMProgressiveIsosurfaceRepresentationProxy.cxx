@@ -111,6 +111,7 @@ void vtkSMProgressiveIsosurfaceRepresentationProxy::UpdatePropertyInformationInt
   set("GPUBytes", this->Statistics->GetGPUBytes());
   set("CompressedBytes", this->Statistics->GetCompressedBytes());
   set("BudgetBytes", this->Statistics->GetMemoryBudget());
+  set("UncertainFraction", this->Statistics->GetUncertainFraction());
   const std::vector<double>& levels = this->Statistics->GetLevelPixels();
   vtkSMPropertyHelper(this, "LevelPixels")
     .Set(levels.data(), static_cast<unsigned int>(levels.size()));

@@ -34,6 +34,12 @@ QString percent(double fraction)
   return QString::number(shown, 'f', fraction < 1.0 ? 1 : 0) + " %";
 }
 
+QString atMost(double fraction)
+{
+  // round up: an image with one uncertain pixel is not certain
+  return QString::number(std::ceil(1000.0 * fraction) / 10.0, 'f', fraction > 0.0 ? 1 : 0) + " %";
+}
+
 QString mebibytes(double bytes)
 {
   return QString::number(bytes / (1 << 20), 'f', 1);
@@ -69,6 +75,8 @@ pqIsosurfaceStatisticsWidget::pqIsosurfaceStatisticsWidget(
   , Image(new QLabel(this->Details))
   , LevelsTitle(new QLabel(tr("Levels"), this->Details))
   , Levels(new QLabel(this->Details))
+  , UncertainTitle(new QLabel(tr("Uncertain"), this->Details))
+  , Uncertain(new QLabel(this->Details))
   , Passes(new QTableWidget(this->Details))
 {
   this->setShowLabel(false);
@@ -92,6 +100,10 @@ pqIsosurfaceStatisticsWidget::pqIsosurfaceStatisticsWidget(
   this->Levels->setObjectName("Levels");
   this->Levels->setToolTip(tr("Part of the surface's pixels that each level of detail draws; level "
                               "0 is the volume itself"));
+  this->Uncertain->setObjectName("Uncertain");
+  this->Uncertain->setToolTip(
+    tr("Part of the pixels within the volume's outline where coarser levels show nothing on the "
+       "way and the volume itself may; none where Level Of Detail is Conservative"));
   this->makeTable();
 
   auto* form = new QFormLayout(this->Details);
@@ -100,6 +112,7 @@ pqIsosurfaceStatisticsWidget::pqIsosurfaceStatisticsWidget(
   form->addRow(tr("Memory"), this->Memory);
   form->addRow(tr("Image"), this->Image);
   form->addRow(this->LevelsTitle, this->Levels);
+  form->addRow(this->UncertainTitle, this->Uncertain);
   form->addRow(this->Passes);
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
@@ -173,14 +186,21 @@ QString pqIsosurfaceStatisticsWidget::showLevels(vtkPVIsosurfaceInformation* sta
   const std::vector<double>& pixels = statistics->GetLevelPixels();
   const double all = std::accumulate(pixels.begin(), pixels.end(), 0.0);
   const bool several = pixels.size() > 1 && all > 0.0;
-  this->LevelsTitle->setVisible(several);
-  this->Levels->setVisible(several);
+  for (QLabel* label : { this->LevelsTitle, this->Levels, this->UncertainTitle, this->Uncertain })
+  {
+    label->setVisible(several);
+  }
   if (!several)
   {
     return QString();
   }
   this->Levels->setText(parts(pixels, all));
-  return tr("; %1 of the surface from coarser levels").arg(percent(1.0 - pixels[0] / all));
+  const double uncertain = statistics->GetUncertainFraction();
+  this->Uncertain->setText(atMost(uncertain));
+  const QString coarse = percent(1.0 - pixels[0] / all);
+  return uncertain > 0.0 ? tr("; %1 of the surface from coarser levels, %2 of the pixels uncertain")
+                             .arg(coarse, atMost(uncertain))
+                         : tr("; %1 of the surface from coarser levels").arg(coarse);
 }
 
 //-----------------------------------------------------------------------------

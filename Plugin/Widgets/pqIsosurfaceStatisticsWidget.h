@@ -5,10 +5,10 @@
  * @brief   shows in ParaView's panel how a progressive isosurface refines
  *
  * Shows the property group of a progressive isosurface's statistics: how much of the image is
- * complete, memory and its budget, and how much of the surface coarser levels of detail draw, in a
- * line; with advanced properties also the passes with their times, and the part of each level. It
- * follows its vtkSMProgressiveIsosurfaceRepresentationProxy, which gathers the statistics after
- * every image, and changes nothing.
+ * complete, memory and its budget, how much of the surface coarser levels of detail draw and where
+ * they may hide something, in a line; with advanced properties also the passes with their times,
+ * and the part of each level. It follows its vtkSMProgressiveIsosurfaceRepresentationProxy, which
+ * gathers the statistics after every image, and changes nothing.
  */
 
 #ifndef pqIsosurfaceStatisticsWidget_h
@@ -54,6 +54,8 @@ private:
   QLabel* Image;
   QLabel* LevelsTitle;
   QLabel* Levels;
+  QLabel* UncertainTitle;
+  QLabel* Uncertain;
   QTableWidget* Passes;
 
   Q_DISABLE_COPY(pqIsosurfaceStatisticsWidget)

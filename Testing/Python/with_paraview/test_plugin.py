@@ -77,7 +77,7 @@ def test_panel_in_the_window(build, tmp_path):
     assert found["default"] == "Progressive Isosurface"
     hidden = ("Isosurface Array", "Isosurface Component", "Mask NaN", "Speculation")
     hidden += ("Compression Rate (bits per voxel)", "Memory Budget (MiB)")
-    hidden += ("Level Of Detail Tolerance (pixels)", "Levels")
+    hidden += ("Level Of Detail Tolerance (pixels)", "Levels", "Uncertain")
     simple, advanced, plain = found["simple"], found["advanced"], found["plain"]
     assert not set(hidden) & set(simple) and "Level Of Detail" in simple, simple
     assert (
@@ -88,8 +88,14 @@ def test_panel_in_the_window(build, tmp_path):
     assert {"Speculation", "Memory Budget (MiB)", "Completed"} <= set(advanced), advanced
     assert "Level Of Detail Tolerance (pixels)" in advanced, advanced
     assert not {"Isosurface Array", "Compression Rate (bits per voxel)"} & set(advanced), advanced
-    assert "Levels" not in advanced and "0: 0.0 %, 1: 100 %" in found["levels"], found["levels"]
-    assert any("100 % of the surface from coarser levels" in text for text in found["coarse"])
+    assert not {"Levels", "Uncertain"} & set(advanced), advanced
+    assert "0: 0.0 %, 1: 100 %" in found["levels"], found["levels"]
+    fraction, shown = found["uncertain"], found["levels"]
+    at_most = float(shown[shown.index("Uncertain") + 1].removesuffix(" %")) / 100
+    assert 0 < fraction <= at_most < fraction + 0.0011, (fraction, shown)
+    line = "100 % of the surface from coarser levels, "
+    line += f"{100 * at_most:.1f} % of the pixels uncertain"
+    assert any(line in text for text in found["coarse"]), found["coarse"]
     assert not any("coarser levels" in text for text in simple), simple
     assert {"Isosurface Array", "Compression Rate (bits per voxel)"} <= set(plain), plain
     assert "Isosurface Component" not in plain and "Isosurface Component" in found["vectors"]
@@ -102,7 +108,7 @@ def test_panel_in_the_window(build, tmp_path):
     assert found["undone"] == found["before"]
 
     assert found["cropped"] == found["clipped"] == found["second"] == 1
-    for name in ("simple", "slider", "cropping", "plane", "advanced", "levels", "plain"):
+    for name in ("simple", "slider", "cropping", "plane", "advanced", "levels", "coarse", "plain"):
         assert (tmp_path / f"gui_{name}.png").stat().st_size > 50_000
 
 

@@ -1,11 +1,11 @@
 """Runs inside ParaView's own window (see gui.sh) and uses the panel as a user would.
 
-Writes gui.json with what the panel showed, and pictures of the window: gui_simple.png,
-gui_slider.png, gui_cropping.png, gui_plane.png, gui_advanced.png, gui_levels.png and gui_plain.png.
+Writes gui.json with what the panel showed, and pictures of the window, gui_NAME.png: simple,
+slider, cropping, plane, advanced, levels, coarse and plain.
 """
 
 import window
-from paraview import simple
+from paraview import servermanager, simple
 from window import (
     LEFT,
     QtCore,
@@ -103,10 +103,13 @@ def scenario():
     while not any(text.startswith("0: ") for text in labels()):  # the driver compiles
         yield 200
     found["levels"] = labels()
+    figure = servermanager.vtkSMPropertyHelper(display.SMProxy, "UncertainFraction")
+    found["uncertain"] = figure.GetAsDouble()
+    picture("levels")
     advanced.click()
     yield 500
     found["coarse"] = labels()
-    picture("levels")
+    picture("coarse")
 
     # a plain image has more to choose, vectors their component
     simple.Hide(compressed, view)

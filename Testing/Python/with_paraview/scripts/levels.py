@@ -1,4 +1,5 @@
-"""Level Of Detail draws far parts coarsely always, never, or only while the camera moves."""
+"""Level Of Detail draws far parts coarsely always, never, or only while the camera moves, and
+tells where this may lose something; Conservative loses nothing."""
 
 import numpy
 import session
@@ -32,10 +33,21 @@ def levels():
     return session.figures(display, "LevelPixels")
 
 
+def uncertain():
+    """Return the fraction of pixels where a level of detail may hide something."""
+    (fraction,) = session.figures(display, "UncertainFraction")
+    return fraction
+
+
+def drawn(pixels):
+    """Return where the surface is, which has other colours than the corner."""
+    return (pixels != pixels[0, 0]).any(axis=2)
+
+
 def is_exact():
     """Tell whether the volume itself drew all of the last image."""
     pixels = levels()
-    return pixels[0] > 1000 and sum(pixels[1:]) == 0
+    return pixels[0] > 1000 and sum(pixels[1:]) == 0 and uncertain() == 0
 
 
 def is_coarse():
@@ -45,10 +57,11 @@ def is_coarse():
 
 
 assert display.LevelOfDetail == "Off" and display.PixelTolerance == 1.0
-assert list(display.GetProperty("LevelOfDetail").Available) == ["Off", "On", "Interactive"]
+CHOICES = ["Off", "On", "Interactive", "Conservative"]
+assert list(display.GetProperty("LevelOfDetail").Available) == CHOICES
 exact = session.screenshot(view, "levels_off.png")
 session.check_same(exact, moved())
-assert levels() == []
+assert levels() == [] and uncertain() == 0
 
 # only while the camera moves: what is still, and what is saved, is exact
 display.LevelOfDetail = "Interactive"
@@ -71,6 +84,15 @@ display.PixelTolerance = 8.0
 coarser = session.screenshot(view, "levels_tolerance.png")
 after = levels()
 assert after[2] > before[2] and after[0] <= before[0], (before, after)
+lost = drawn(exact) & ~drawn(coarser)
+assert lost.any() and lost.sum() / lost.size < uncertain() < 1, (lost.sum(), uncertain())
+
+# conservatively: nothing of what the volume shows is lost
+display.LevelOfDetail = "Conservative"
+whole = session.screenshot(view, "levels_conservative.png")
+assert is_coarse() and uncertain() == 0, (levels(), uncertain())
+assert not (drawn(exact) & ~drawn(whole)).any(), (drawn(exact) & ~drawn(whole)).sum()
+display.LevelOfDetail = "On"
 display.PixelTolerance = 0.0625  # finer than any sample here: the volume itself
 session.check_same(exact, session.screenshot(view, "levels_fine.png"))
 assert is_exact(), levels()
@@ -97,7 +119,7 @@ display = session.show_isosurface(blocks, view, Isovalues=[150.0], LevelOfDetail
 with session.messages() as listener:
     halved = session.screenshot(view, "levels_blocks.png")
 assert listener.GetOutput() == "", listener.GetOutput()
-assert is_coarse() and sum(levels()) >= sum(before), levels()
+assert is_coarse() and sum(levels()) >= sum(before) and 0 < uncertain() < 1, levels()
 assert abs(halved - coarse).mean() < 0.5, abs(halved - coarse).mean()
 simple.Hide(blocks, view)
 

@@ -68,10 +68,13 @@ with server.connected(PROCESSES):
     packed.PixelTolerance = 64.0
     session.check_same(there, session.screenshot(view, "remote_levels.png"))
     (still,) = session.figures(packed, "LevelPixels")
+    assert session.figures(packed, "UncertainFraction") == [0.0]
     view.SMProxy.InteractiveRender()
     while session.information(packed)["completed"] < 1.0:
         view.SMProxy.InteractiveRender()
     exact, *coarser = session.figures(packed, "LevelPixels")
     assert exact == 0.0 < sum(coarser) and still > 0.0, (still, exact, coarser)
+    (uncertain,) = session.figures(packed, "UncertainFraction")
+    assert 0.0 < uncertain < 1.0, uncertain
 
 session.finish(here=info_here, there=info)
