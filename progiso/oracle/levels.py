@@ -11,6 +11,10 @@ blend: its Bernstein coefficients are those of both, weighted by what the next l
 0, 1, 2 and 3 thirds of the piece. That is the blend itself at a piece's ends, and everywhere where
 the weight is constant.
 
+Conservative rays look at the volume itself, too: in each block that they pass without a hit where
+a coarser level is drawn or blends in. There they hit where they cross the volume's own surface
+between the places at which they enter and leave the block.
+
 `Cast.early` and `Cast.late` bound what rounding may do, as in `caster`: the error of a blend is at
 most that of both levels together.
 """
@@ -20,6 +24,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -38,6 +43,9 @@ from .caster import (
 
 #: A level goes over to the next in the last quarter of an octave of distances between samples.
 BLENDING = 2.0**-0.25
+
+#: Cells along each side of a block.
+BLOCK_SIDE = 4
 
 _EXACT = Slack()
 
@@ -205,7 +213,8 @@ class LevelCast(Cast):
     Attributes
     ----------
     level
-        in which the surface is seen, the finer one where two blend; -1 of misses.
+        in which the surface is seen, the finer one where two blend; 0 where a conservative ray
+        has looked at the volume itself; -1 of misses.
     """
 
     level: np.ndarray
@@ -218,6 +227,7 @@ def cast(
     size: tuple[int, int],
     *,
     tolerance: float = 1.0,
+    conservative: bool = False,
     slack: Slack = _EXACT,
     clip: tuple[float, float] = (0.0, np.inf),
     pixels: np.ndarray | None = None,
@@ -233,6 +243,8 @@ def cast(
         width and height of the image.
     tolerance : float
         how many pixels a level's samples may be apart.
+    conservative : bool
+        whether rays look at the volume itself where coarser levels show nothing.
     slack : Slack
         its positions are in voxels of each level.
     clip : (float, float)
@@ -249,14 +261,17 @@ def cast(
     origins, directions = camera.rays(size, pixels)
     across = directions @ camera.forward
     start, step = index_rays(pyramid.volume, origins, directions)
-    way = _Way(pyramid, pyramid.grids(float(isovalue), slack), stretches, start, step, across)
+    grids = pyramid.grids(float(isovalue), slack)
+    kind = _ConservativeWay if conservative else _Way
+    way = kind(pyramid, grids, stretches, start, step, across)
     hits = cast_at_box(
         way.grids[0].size, start, step, clip[0] / across, clip[1] / across, slack, way.walk
     )
     early, depth, late = hits
-    level = np.where(np.isinf(depth), -1, _level_at(stretches, depth * across))
+    level = np.where(way.finest, 0, _level_at(stretches, depth * across))
+    level[np.isinf(depth)] = -1
     first = np.where(np.isinf(depth), early, depth)
-    nearest = np.where(np.isinf(first), 0, _level_at(stretches, first * across))
+    nearest = np.where(np.isinf(first) | way.finest, 0, _level_at(stretches, first * across))
     voxels = np.linalg.norm(step / np.array(pyramid.steps)[nearest].T, axis=0)
     result = LevelCast(depth, early, late, voxels, pyramid.volume.spacing, level=level)
     return result.reshape((size[1], size[0]) if pixels is None else (-1,))
@@ -280,6 +295,11 @@ class _Way:
     step: np.ndarray
     across: np.ndarray
 
+    @cached_property
+    def finest(self) -> np.ndarray:
+        """Mark the rays that hit where they look at the volume itself."""
+        return np.zeros(len(self.across), bool)
+
     def walk(self, rays: np.ndarray, enter: np.ndarray, leave: np.ndarray) -> np.ndarray:
         """Return `early`, `depth` and `late` of some rays, between the distances given."""
         progress = Progress.none(len(rays))
@@ -288,12 +308,21 @@ class _Way:
             end = np.minimum(leave, stretch.end / self.across[rays])
             there = np.flatnonzero((begin <= end) & np.isinf(progress.hits[2]))
             if len(there):
-                walk = self._walk_of(
-                    stretch, rays[there], begin[there], end[there], progress.of(there)
-                )
-                walk.run()
-                progress.update(there, walk.progress)
+                part = progress.of(there)
+                self._cross(stretch, rays[there], begin[there], end[there], part)
+                progress.update(there, part)
         return progress.result()
+
+    def _cross(
+        self,
+        stretch: Stretch,
+        rays: np.ndarray,
+        begin: np.ndarray,
+        end: np.ndarray,
+        progress: Progress,
+    ) -> None:
+        """Take rays through a part of a stretch."""
+        self._walk_of(stretch, rays, begin, end, progress).run()
 
     def _walk_of(
         self,
@@ -316,6 +345,60 @@ class _Way:
             ratio=steps[stretch.level + 1] // steps[stretch.level],
             weights=(stretch.weight(depths[0]), stretch.weight(depths[1])),
         )
+
+
+class _ConservativeWay(_Way):
+    """Looks at the volume itself in blocks that rays pass without a hit."""
+
+    def _cross(
+        self,
+        stretch: Stretch,
+        rays: np.ndarray,
+        begin: np.ndarray,
+        end: np.ndarray,
+        progress: Progress,
+    ) -> None:
+        if stretch.level == 0 and not stretch.blends:
+            super()._cross(stretch, rays, begin, end, progress)
+            return
+        start, step = self.start[:, rays], self.step[:, rays]
+        side = BLOCK_SIDE * self.pyramid.steps[stretch.level][:, None]
+        block = np.floor((start + begin * step) / side)
+        at, going = begin.copy(), np.arange(len(rays))
+        while len(going):
+            plane = (block[:, going] + (step[:, going] > 0)) * side
+            with np.errstate(divide="ignore", invalid="ignore"):
+                exits = (plane - start[:, going]) / step[:, going]
+            exits[step[:, going] == 0] = np.inf
+            axis = np.argmin(exits, axis=0)
+            leave = np.clip(exits.min(axis=0), at[going], end[going])
+            part = progress.of(going)
+            super()._cross(stretch, rays[going], at[going], leave, part)
+            self._look_within(rays[going], at[going], leave, part)
+            progress.update(going, part)
+            at[going] = leave
+            block[axis, going] += np.sign(step[axis, going])
+            going = going[(leave < end[going]) & np.isinf(part.hits[2])]
+
+    def _look_within(
+        self, rays: np.ndarray, begin: np.ndarray, end: np.ndarray, progress: Progress
+    ) -> None:
+        """Have rays without a certain hit look at the volume itself between two distances."""
+        passing = np.flatnonzero(np.isinf(progress.hits[2]))
+        some = rays[passing]
+        walk = Walk(
+            self.grids[0], self.start[:, some], self.step[:, some], begin[passing], end[passing]
+        )
+        walk.run()
+        early, depth, late = walk.progress.result()
+        before = progress.hits[:, passing]
+        # a ray that rounding may have hit before hits here at the latest
+        latest = np.where(np.isinf(before[0]), late, end[passing])
+        progress.hits[0, passing] = np.minimum(before[0], early)
+        progress.hits[2, passing] = np.where(np.isinf(late), np.inf, latest)
+        new = np.isinf(before[1]) & np.isfinite(depth)
+        progress.hits[1, passing[new]] = depth[new]
+        self.finest[some[new]] = True
 
 
 class _BlendingWalk(Walk):

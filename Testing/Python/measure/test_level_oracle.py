@@ -449,6 +449,56 @@ def test_chosen_pixels_are_those_of_the_image():
         assert np.array_equal(getattr(some, name), getattr(whole, name).ravel()[pixels]), name
 
 
+@pytest.mark.parametrize("weight", [0.0, 0.4])
+def test_conservative_rays_hit_what_they_pass(weight):
+    """A ray hits in the first block that it passes where the volume has a surface, unless its level
+    has one in that block or in one before."""
+    samples = (41, 35, 50)
+    rng = np.random.default_rng(10)
+    pyramid = unrelated(10, samples)
+    lone = np.where(rng.random(samples[::-1]) < 0.05, 1.0, 0.0)
+    coarse = tuple(Level(0.45 + 0.1 * (x.values > 1.6), x.steps) for x in pyramid.coarser)
+    pyramid = Pyramid(Volume(lone, np.eye(4)), coarse)
+    apart = 4 * (levels.BLENDING * (1 - weight) + weight) if weight else 2.5
+    camera = camera_at(60, samples, parallel_scale=22.3)
+    options = {"tolerance": apart * SIZE[1] / (2 * 22.3)}
+    plain = levels.cast(pyramid, 0.5, camera, SIZE, **options)
+    found = levels.cast(pyramid, 0.5, camera, SIZE, conservative=True, **options)
+    origins, directions = camera.rays(SIZE)
+
+    def block_at(ray, depth):
+        return tuple(np.floor((origins[ray] + depth * directions[ray]) / 8))
+
+    expected = plain.depth.ravel().copy()
+    crossings = caster.cast_all(pyramid.volume, [0.5], camera, SIZE)
+    for ray, depth in reversed(list(zip(crossings.ray, crossings.depth))):
+        hit = plain.depth.flat[ray]
+        if depth < hit and (np.isinf(hit) or block_at(ray, depth) != block_at(ray, hit)):
+            expected[ray] = depth
+    first = expected != plain.depth.ravel()
+    # rays that the level stops in the block where the volume's own surface is nearer
+    nearer = crossings.ray[crossings.depth < plain.depth.flat[crossings.ray]]
+    stopped = np.setdiff1d(nearer, np.flatnonzero(first))
+    assert first.sum() > 100 and len(stopped) > 10
+    both = np.isfinite(expected)
+    assert np.array_equal(both, np.isfinite(found.depth.ravel()))
+    off = found.depth.ravel()[both] - expected[both]
+    assert np.abs(off).max() < tolerances.ORACLE_EXACT
+    assert (found.level.ravel()[first] == 0).all()
+    assert (found.level.ravel()[~first & both] == 1).all()
+    assert (found.early <= found.depth).all() and (found.depth <= found.late).all()
+
+
+def test_conservative_rays_are_exact_near_by():
+    """Where the volume itself is drawn there is nothing else to look at."""
+    samples = (40, 21, 24)
+    pyramid = unrelated(11, samples)
+    camera = camera_at(18, samples)
+    near = levels.cast(pyramid, 0.8, camera, SIZE, tolerance=0.01, conservative=True)
+    assert np.array_equal(near.depth, caster.cast(pyramid.volume, 0.8, camera, SIZE).depth)
+    assert set(np.unique(near.level)) == {-1, 0}
+
+
 def test_bad_pyramids_are_refused():
     volume = Volume(np.zeros((8, 8, 9)), np.eye(4))
     with pytest.raises(ValueError, match="level 1 has steps"):

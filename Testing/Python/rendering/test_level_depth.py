@@ -30,11 +30,13 @@ def holed(shape):
 
 def check_levels(
     pyramid, image, isovalue, camera, tolerance, seen, grazing=tolerances.GRAZING_FRACTION,
-    user_matrix=None, **settings
+    user_matrix=None, conservative=False, **settings
 ):  # fmt: skip
     """Hold depths against the caster, and the statistics' levels, of which all of `seen` are."""
     scene = Scene(image, isovalue, camera, SIZE, user_matrix, PixelTolerance=tolerance, **settings)
     scene.mapper.SetLevelOfDetailToOn()
+    if conservative:
+        scene.mapper.SetLevelOfDetailToConservative()
     got = scene.depth()
     expected = levels.cast(
         pyramid,
@@ -42,6 +44,7 @@ def check_levels(
         camera,
         SIZE,
         tolerance=tolerance,
+        conservative=conservative,
         slack=tolerances.SLACK,
         clip=scene.clipping_range,
     )
@@ -111,3 +114,27 @@ def test_along_the_axes():
             )
             grazing = tolerances.GRAZING_FRACTION_NOISE
             check_levels(pyramid, image, 0.8, camera, 3.7, (0,), grazing)
+
+
+def sheets(shape):
+    """Return bent sheets that are hardly thicker than a sample, among blobs."""
+    away = np.abs(4 * blobs(shape, 5, waves=2) % 2 - 1)
+    return np.maximum(1 - 8 * away, blobs(shape, 3, waves=6) - 1)
+
+
+@pytest.mark.parametrize("settings", [{}, {"SpeculationLimit": 3, **CACHED}])
+@pytest.mark.parametrize("field", ["gyroid", "sheets", "holes"])
+def test_conservative(field, settings):
+    shape = (90, 140, 131)
+    make, isovalue, seen = {
+        "gyroid": (gyroid, 0.1, 1),
+        "sheets": (sheets, 0.5, 0),  # of the volume itself, whatever level is drawn
+        "holes": (holed, 0.2, 0),
+    }[field]
+    image = progiso.compress(make_image(make(shape)), rate=16, levels=11)
+    pyramid = reference_pyramid(image)
+    camera = orbit(pyramid.volume, 2, 5, view_angle=70, distance=0.6)
+    check_levels(pyramid, image, isovalue, camera, 4.0, (0,), conservative=True, **settings)
+    # no ray lies in a plane of voxels, where holes may begin
+    camera = dataclasses.replace(camera, parallel_scale=59.3)
+    check_levels(pyramid, image, isovalue, camera, 3.5, (seen,), conservative=True, **settings)
