@@ -80,9 +80,12 @@ def _check(
     tolerance: float,
     seen: Sequence[int],
     grazing: float = tolerances.GRAZING_FRACTION,
+    conservative: bool = False,
 ) -> Outcome:
     """Compare an image with the caster's of the same levels, of which all of `seen` must be."""
     view = Picture(image, isovalue, settings.size, pixel_tolerance=tolerance)
+    if conservative:
+        view.mapper.SetLevelOfDetailToConservative()
     shot = shoot(view, camera, settings.repeat)
     expected = levels.cast(
         pyramid_of(image),
@@ -90,6 +93,7 @@ def _check(
         shot.eye,
         settings.size,
         tolerance=tolerance,
+        conservative=conservative,
         slack=tolerances.SLACK,
         clip=shot.clip,
     )
@@ -135,6 +139,13 @@ def _stretched(settings: Settings) -> Outcome:
     image = with_levels(gyroid((35, 128, 71)), spacing=(0.7, 0.3, 1.9))
     camera = _near(image, 1, 0.9)
     return _check(settings, image, 0.1, camera, settings.size[1] / 40, (0, 1))
+
+
+def _depths_of_thin(settings: Settings) -> Outcome:
+    """Draw what is thin conservatively, from where the volume itself and levels are drawn."""
+    image = with_levels(thin_field(_SHAPE, 5))
+    camera = _near(image, 2, 0.8)
+    return _check(settings, image, 0.0, camera, settings.size[1] / 30, (0, 2), conservative=True)
 
 
 def _from_inside(settings: Settings) -> Outcome:
@@ -464,6 +475,7 @@ CASES = (
         "levels: zoom by steps of 0.1 %, parallel projection", partial(_zoom, _scaled, _JUMP), False
     ),
     Case("conservative: sheets and threads of a sample", _conservative),
+    Case("conservative: depths of the same", _depths_of_thin, quick=False),
     Case(
         "conservative: the same, parallel projection",
         partial(_conservative, in_parallel=True),
