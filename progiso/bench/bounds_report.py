@@ -27,7 +27,7 @@ where there should be one, and the other way round, in parts of the hits that th
 {MOVE:g}°, both views having been rendered before, median. *Blocks*: what a first image decodes as
 rays meet them (times are of volumes that are decoded whole, where they are small). *Levels*: pixels
 whose surface is drawn from each, level 0 being the volume. *Uncertain*: pixels before whose surface
-a level may hide something."""
+a level may hide something, in parts of the rectangle of pixels in which the volume lies."""
 
 _EXACT = {
     "caster": "a double-precision caster over the decompressed samples",
