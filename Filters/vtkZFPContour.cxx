@@ -87,8 +87,9 @@ Status CheckLevel(vtkCompressedVolume* volume, int level)
 //------------------------------------------------------------------------------
 // Finds the cells between samples that are contoured, and whether some of them are ghosts: those of
 // the image, and where it is a piece of one that several processes share, the requested levels
-// around it. Without information it is none. `samples` is the extent of the stream's samples. Of cell data, the cells behind an
-// image's last samples belong to it where another process has the next samples.
+// around it. Without information it is none. `samples` is the extent of the stream's samples. Of
+// cell data, the cells behind an image's last samples belong to it where another process has the
+// next samples.
 Bricks::Box FindCells(vtkCompressedVolume* volume, const int own[6], vtkInformation* inputInfo,
   vtkInformation* outputInfo, const int samples[6], bool& hasGhosts)
 {

@@ -212,7 +212,9 @@ public:
    *   moves), exact when it is still.
    * - LevelOfDetailConservative: as on, but where a ray passes a block of a coarser level without a
    *   hit, and samples of the volume itself lie on both sides of the isovalue there, the ray looks
-   *   at these: nothing that is in the volume is lost, however thin. Costs more where much is thin.
+   *   at these: a ray that hits the surface of the volume itself never misses, however thin that
+   * is, and its hit is behind it by less than a block of the level. Where much is thin it costs as
+   *   much as the exact image, or more.
    *
    * A volume without levels is drawn exactly, with a warning; also, without one, where the colours
    * are categories, of which a coarser level has none.

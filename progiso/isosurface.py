@@ -72,8 +72,8 @@ def make_isosurface(
         at most `pixel_tolerance` pixels apart there, so that time and memory follow the pixels
         (``levels`` of `statistics` tells how many come from which, ``uncertain`` where they may
         hide something); "interactive" does so only while the view moves; "conservative" looks at
-        the volume itself where coarser copies show nothing that it may have, so that no feature
-        is lost, however thin; "off" is exact. A plain image gets such copies when it is compressed,
+        the volume itself where coarser copies show nothing that it may have, so that no ray misses
+        what it would hit there, however thin; "off" is exact. A plain image gets such copies when it is compressed,
         a compressed volume has them by ``levels`` of `compress`; one without is drawn exactly, with
         a warning.
     pixel_tolerance : float, default: 1

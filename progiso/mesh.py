@@ -129,7 +129,9 @@ def contour(
         extractor.SetNumberOfThreads(threads)
         extractor.SetInputData(image)
     elif level > 0:
-        raise ValueError(f"a plain image has no level {level}: compress it with levels, or give a rate")
+        raise ValueError(
+            f"a plain image has no level {level}: compress it with levels, or give a rate"
+        )
     else:
         extractor = _plain_contour(image, array, component)
     for i, value in enumerate(values):

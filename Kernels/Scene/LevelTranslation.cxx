@@ -126,8 +126,8 @@ PixelsOfLevels CountLevels(const PipelineScene& scene, const std::vector<std::ui
   counts.Pixels.assign(std::max(view.NumberOfLevels, 1), 0);
   if (view.NumberOfLevels <= 1)
   {
-    counts.Pixels[0] = static_cast<std::int64_t>(keys.size()) -
-      std::count(keys.begin(), keys.end(), glsl::NO_HIT);
+    counts.Pixels[0] =
+      static_cast<std::int64_t>(keys.size()) - std::count(keys.begin(), keys.end(), glsl::NO_HIT);
     return counts;
   }
   const std::vector<double> hits =

@@ -61,8 +61,8 @@ std::vector<SceneNeeds> Scenes()
   for (const bool conservative : { false, true })
   {
     const SceneNeeds cached = SmallScene(true), decoded = SmallScene(false);
-    for (const SceneNeeds& needs : { cached, WithAllFeatures(cached), Translucent(cached), decoded,
-           WithAllFeatures(decoded) })
+    for (const SceneNeeds& needs :
+      { cached, WithAllFeatures(cached), Translucent(cached), decoded, WithAllFeatures(decoded) })
     {
       scenes.push_back(WithLevels(needs, conservative));
     }

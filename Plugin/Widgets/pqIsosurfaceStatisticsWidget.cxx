@@ -34,7 +34,7 @@ QString percent(double fraction)
   return QString::number(shown, 'f', fraction < 1.0 ? 1 : 0) + " %";
 }
 
-QString atMost(double fraction)
+QString largest(double fraction)
 {
   // round up: an image with one uncertain pixel is not certain
   return QString::number(std::ceil(1000.0 * fraction) / 10.0, 'f', fraction > 0.0 ? 1 : 0) + " %";
@@ -196,10 +196,10 @@ QString pqIsosurfaceStatisticsWidget::showLevels(vtkPVIsosurfaceInformation* sta
   }
   this->Levels->setText(parts(pixels, all));
   const double uncertain = statistics->GetUncertainFraction();
-  this->Uncertain->setText(atMost(uncertain));
+  this->Uncertain->setText(largest(uncertain));
   const QString coarse = percent(1.0 - pixels[0] / all);
   return uncertain > 0.0 ? tr("; %1 of the surface from coarser levels, %2 of the pixels uncertain")
-                             .arg(coarse, atMost(uncertain))
+                             .arg(coarse, largest(uncertain))
                          : tr("; %1 of the surface from coarser levels").arg(coarse);
 }
 

@@ -69,9 +69,7 @@ def test_near_it_is_exact(volume, view, parallel, settings):
     if parallel:
         camera = dataclasses.replace(camera, parallel_scale=60.0)
     exact = Scene(volume, 0.1, camera, lit=True)
-    near = Scene(
-        volume, 0.1, camera, lit=True, LevelOfDetail=ON, PixelTolerance=0.0625, **settings
-    )
+    near = Scene(volume, 0.1, camera, lit=True, LevelOfDetail=ON, PixelTolerance=0.0625, **settings)
     assert near.depth().tobytes() == exact.depth().tobytes()
     assert near.picture().tobytes() == exact.picture().tobytes()
     assert levels_of(near)[1:] == [0, 0, 0] and doubts(near) == 0

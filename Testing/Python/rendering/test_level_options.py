@@ -76,9 +76,7 @@ def test_tolerances_within_the_mappers(volume, tolerance):
 
 def test_a_wrong_level_is_told_before_anything_is_compressed(plain, camera):
     told = []
-    with pytest.raises(
-        ValueError, match="'on', 'interactive' or 'conservative', got"
-    ):
+    with pytest.raises(ValueError, match="'on', 'interactive' or 'conservative', got"):
         rendered(plain, camera, level_of_detail="fine", progress=told.append)
     assert not told
 

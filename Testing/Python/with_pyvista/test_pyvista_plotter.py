@@ -140,9 +140,7 @@ def test_the_view_is_coarse_while_the_mouse_turns_it(plotter, large_ball):
 
 @pytest.mark.parametrize("method", ["add_isosurface", "add_isosurface_slider"])
 def test_no_such_level_of_detail(plotter, large_ball, method):
-    with pytest.raises(
-        ValueError, match="'on', 'interactive' or 'conservative', got"
-    ):
+    with pytest.raises(ValueError, match="'on', 'interactive' or 'conservative', got"):
         getattr(plotter.progiso, method)(large_ball, (10, 30), level_of_detail="fast")
     assert not plotter.actors
 
