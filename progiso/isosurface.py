@@ -73,9 +73,9 @@ def make_isosurface(
         (``levels`` of `statistics` tells how many come from which, ``uncertain`` where they may
         hide something); "interactive" does so only while the view moves; "conservative" looks at
         the volume itself where coarser copies show nothing that it may have, so that no ray misses
-        what it would hit there, however thin; "off" is exact. A plain image gets such copies when it is compressed,
-        a compressed volume has them by ``levels`` of `compress`; one without is drawn exactly, with
-        a warning.
+        what it would hit there, however thin; "off" is exact. A plain image gets such copies when
+        it is compressed, a compressed volume has them by ``levels`` of `compress`; one without is
+        drawn exactly, with a warning.
     pixel_tolerance : float, default: 1
         Pixels between samples, 1/16 to 64; more of them are faster.
     detailed : bool, default: False

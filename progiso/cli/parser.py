@@ -250,7 +250,7 @@ def _add_render(subparsers: _Subparsers) -> None:
     command.add_argument(
         "--level-of-detail", choices=LEVELS_OF_DETAIL, default="off",
         help="on: coarser copies of the volume draw what is far, where they are fine enough for "
-        "the pixels; conservative: so that nothing is lost, however thin (off, the default, is "
+        "the pixels; conservative: so that no ray misses what is thin (off, the default, is "
         "exact, and so is interactive: off screen nothing moves)",
     )  # fmt: skip
     command.add_argument(
