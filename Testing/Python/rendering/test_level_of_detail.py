@@ -75,6 +75,23 @@ def test_near_it_is_exact(volume, view, parallel, settings):
     assert levels_of(near)[1:] == [0, 0, 0] and doubts(near) == 0
 
 
+WAYS = {
+    "DecodeWholeVolume": True,
+    "SpeculationLimit": 64,
+    "PixelsPerStraggler": -1,
+    "MemoryBudget": 0,
+    "MaximumPassesPerRender": 0,
+    "LargestBuffer": 0,
+}
+
+
+def start_anew(scene, settings):
+    """Have a scene's next image made in another way from nothing but compiled programs."""
+    for name, value in {**WAYS, **settings}.items():
+        getattr(scene.mapper, "Set" + name)(value)
+    scene.mapper.EmptyCache()
+
+
 @pytest.mark.parametrize("parallel", [False, True])
 @pytest.mark.parametrize(
     "mode, isovalues", [(ON, [0.1]), (ON, [-0.4, 0.1, 0.5]), (CONSERVATIVE, [0.1])]
@@ -88,6 +105,9 @@ def test_the_work_is_divided_in_any_way(volume, view, mode, isovalues, parallel)
     on = {"LevelOfDetail": mode, "PixelTolerance": tolerance}
     least = least_budget(volume, 0.1, camera, **on)
     expected = None
+    scene = Scene(volume, 0.1, camera, lit=True, **on)
+    for i, isovalue in enumerate(isovalues):
+        scene.volume.GetProperty().GetIsoSurfaceValues().SetValue(i, isovalue)
     for settings in (
         {},
         CACHED,
@@ -99,9 +119,7 @@ def test_the_work_is_divided_in_any_way(volume, view, mode, isovalues, parallel)
         {"MaximumPassesPerRender": 1, **CACHED},
         {"LargestBuffer": 1 << 20},
     ):
-        scene = Scene(volume, 0.1, camera, lit=True, **on, **settings)
-        for i, isovalue in enumerate(isovalues):
-            scene.volume.GetProperty().GetIsoSurfaceValues().SetValue(i, isovalue)
+        start_anew(scene, settings)
         got = scene.depth().tobytes(), scene.picture().tobytes(), levels_of(scene), doubts(scene)
         expected = expected or got
         assert got == expected, settings
