@@ -314,7 +314,7 @@ void vtkProgressiveIsosurfaceMapper::Render(vtkRenderer* renderer, vtkVolume* vo
   }
   auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
   window->MakeCurrent();
-  if (!this->BindWindow(window) || !this->UpdateScene(renderer, volume))
+  if (!this->BindWindow(window, volume) || !this->UpdateScene(renderer, volume))
   {
     return;
   }
@@ -433,7 +433,7 @@ bool vtkProgressiveIsosurfaceMapper::UpdateColors(vtkImageData* image)
 }
 
 // Makes the pipeline ready in the window's context, which is current, and gives it the inputs.
-bool vtkProgressiveIsosurfaceMapper::BindWindow(vtkOpenGLRenderWindow* window)
+bool vtkProgressiveIsosurfaceMapper::BindWindow(vtkOpenGLRenderWindow* window, vtkVolume* volume)
 {
   Internals& impl = *this->Impl;
   if (impl.Window.IsBound() && (impl.Window.Get() != window || !impl.Window.HasContext(window)))
@@ -447,7 +447,7 @@ bool vtkProgressiveIsosurfaceMapper::BindWindow(vtkOpenGLRenderWindow* window)
   {
     return false;
   }
-  const int levels = this->CountLevels();
+  const int levels = this->CountLevels(volume);
   if (impl.HandOverTime < impl.Inputs.GetTime() || impl.HandedLevels != levels)
   {
     this->Statistics->SetSource(nullptr); // the last image's figures go
@@ -460,12 +460,23 @@ bool vtkProgressiveIsosurfaceMapper::BindWindow(vtkOpenGLRenderWindow* window)
 }
 
 // The coarser levels of detail that are drawn, now or while the camera moves.
-int vtkProgressiveIsosurfaceMapper::CountLevels()
+int vtkProgressiveIsosurfaceMapper::CountLevels(vtkVolume* volume)
 {
-  const InputArrays& inputs = this->Impl->Inputs;
-  const bool categories = inputs.GetColors().GetImage() && this->ColorLookupTable &&
-    this->ColorLookupTable->GetIndexedLookup();
-  return this->LevelOfDetail == LevelOfDetailOff || categories ? 0 : inputs.CountLevels();
+  const bool exact = this->LevelOfDetail == LevelOfDetailOff || this->HasCategories(volume);
+  return exact ? 0 : this->Impl->Inputs.CountLevels();
+}
+
+// What maps the values of the volume that gives the colours.
+vtkScalarsToColors* vtkProgressiveIsosurfaceMapper::GetColorTable(vtkVolume* volume)
+{
+  return this->ColorLookupTable ? this->ColorLookupTable
+                                : volume->GetProperty()->GetRGBTransferFunction();
+}
+
+bool vtkProgressiveIsosurfaceMapper::HasCategories(vtkVolume* volume)
+{
+  return this->Impl->Inputs.GetColors().GetImage() &&
+    this->GetColorTable(volume)->GetIndexedLookup();
 }
 
 // Says that there are no levels of detail to draw, once for an input.
@@ -561,13 +572,11 @@ bool vtkProgressiveIsosurfaceMapper::UpdateScene(vtkRenderer* renderer, vtkVolum
     return this->Fails("cannot show its input: rays would cross 2^29 voxels and more on their way "
                        "through it; resample the image to spacings that differ less");
   }
-  vtkScalarsToColors* table = this->ColorLookupTable
-    ? this->ColorLookupTable
-    : volume->GetProperty()->GetRGBTransferFunction();
+  vtkScalarsToColors* table = this->GetColorTable(volume);
   const CompressedInput& colors = impl.Inputs.GetColors();
   vtkCompressedVolume* colorVolume = colors.GetImage() ? colors.GetVolume() : nullptr;
   scene.Conservative = this->LevelOfDetail == LevelOfDetailConservative;
-  scene.Categories = colorVolume && table->GetIndexedLookup();
+  scene.Categories = this->HasCategories(volume);
   scene.Translucent = this->DrawsTranslucent(volume->GetProperty());
   const Obstacles obstacles = scene.Translucent ? FindObstacles(renderer, volume) : Obstacles();
   scene.Obstructed = obstacles.Count > 0;

@@ -472,11 +472,13 @@ private:
   ArrayChoice MakeArrayChoice();
   void WarnOfDoubts(vtkVolumeProperty* property);
   void WarnOfTightBudget();
-  int CountLevels();
+  int CountLevels(vtkVolume* volume);
+  vtkScalarsToColors* GetColorTable(vtkVolume* volume);
+  bool HasCategories(vtkVolume* volume);
   void WarnOfLackOfLevels();
   bool DrawsLevels(vtkRenderWindow* window) const;
   bool UpdateColors(vtkImageData* image);
-  bool BindWindow(vtkOpenGLRenderWindow* window);
+  bool BindWindow(vtkOpenGLRenderWindow* window, vtkVolume* volume);
   bool UpdateScene(vtkRenderer* renderer, vtkVolume* volume);
   bool UpdatePipeline(bool newImage, bool mayWait);
   bool StartImage(bool empty);

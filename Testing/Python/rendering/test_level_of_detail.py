@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from vtkmodules.vtkCommonCore import reference
 from vtkmodules.vtkCommonDataModel import vtkPlane
+from vtkmodules.vtkRenderingCore import vtkColorTransferFunction
 
 import progiso
 from helpers.holes import ball, nan_image
@@ -194,6 +195,31 @@ def test_everything_works_with_levels(volume, view, change, mode):
     both = hits & np.isfinite(depths[1])
     assert np.median(abs(depths[0] - depths[1])[both]) < 0.4
     assert np.median(abs(pictures[0] - pictures[1])[both]) < 12
+
+
+@pytest.mark.parametrize("of_property", [False, True])
+def test_categories_are_those_of_the_volume_itself(volume, view, of_property):
+    """A coarser level has none, whichever table tells that values are categories."""
+    camera, tolerance = view
+    labels = progiso.compress(make_image(np.indices(SHAPE).sum(axis=0) // 20), rate=16, levels=11)
+    table = vtkColorTransferFunction()
+    for value in range(20):
+        table.AddRGBPoint(value, value / 20, 0.5, 1 - value / 20)
+        table.SetAnnotation(value, str(value))
+    table.SetIndexedLookup(True)
+    scenes = [Scene(volume, 0.1, camera, LevelOfDetail=mode) for mode in (OFF, ON)]
+    for scene in scenes:
+        scene.mapper.SetPixelTolerance(tolerance)
+        scene.mapper.SetColorInputData(labels)
+        if of_property:
+            scene.volume.GetProperty().SetColor(table)
+        else:
+            scene.mapper.SetColorLookupTable(table)
+    with vtk_messages() as messages:
+        exact, on = (scene.depth() for scene in scenes)
+    assert not messages and on.tobytes() == exact.tobytes()
+    assert scenes[1].picture().tobytes() == scenes[0].picture().tobytes()
+    assert levels_of(scenes[1])[1:] == [0, 0, 0]
 
 
 def test_hidden_samples_stay_hidden(view):
