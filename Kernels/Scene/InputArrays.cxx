@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Scene/InputArrays.h"
 
+#include "Codec/LevelShape.h"
+
 #include "vtkAbstractMapper.h"
 #include "vtkCellData.h"
 #include "vtkCompressedVolume.h"
@@ -28,9 +30,6 @@ vtkDataArray* FindArray(const ArrayChoice& choice, vtkImageData* image, bool& ce
   cellData = cellFlag == 1;
   return array;
 }
-
-// Smaller volumes get no levels.
-constexpr int LargestWithoutLevels = 64;
 
 bool HasSameShape(vtkCompressedVolume* a, vtkCompressedVolume* b)
 {
@@ -129,7 +128,7 @@ std::string InputArrays::DescribeLackOfLevels() const
 {
   vtkCompressedVolume* const values = this->Values.GetVolume();
   const int* samples = values->GetDimensions();
-  if (this->CountLevels() > 0 || *std::max_element(samples, samples + 3) <= LargestWithoutLevels)
+  if (this->CountLevels() > 0 || *std::max_element(samples, samples + 3) <= PageSide)
   {
     return "";
   }
