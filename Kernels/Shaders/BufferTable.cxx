@@ -79,9 +79,9 @@ const std::array<BufferInfo, NumberOfBuffers>& PipelineBuffers()
     { Buffer::BlockMarks, "block_marks", "BLOCK_MARKS", Lifetime::Volume, Always,
       "0.13 *B*, with levels of detail 0.38 *B*",
       [](const E& e) { return (e.Levels ? 24 : 8) * e.Macrocells; }, Access::None,
-      "which blocks' ranges hold one of the isovalues, a bit each; with levels of detail also "
-      "those "
-      "with what they blend with on the next level, and those of the volume's own samples there" },
+      "which blocks' ranges hold one of the isovalues, a bit each; with levels of detail "
+      "also those with what they blend with on the next level, and those of the volume's "
+      "own samples there" },
     { Buffer::HiddenCells, "hidden_cells", "HIDDEN_CELLS", Lifetime::Volume, Hidden,
       "12 for each run of blocks that are alike", [](const E& e) { return 4 * e.HiddenWords; },
       Access::Write, "which cells have no surface" },
