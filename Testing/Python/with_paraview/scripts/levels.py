@@ -4,8 +4,6 @@ tells where this may lose something; Conservative loses nothing."""
 import numpy
 import session
 from paraview import simple
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 
 view = session.start([400, 304])
 view.ImageReductionFactor = 1  # moving images have all rays
@@ -17,15 +15,7 @@ view.GetActiveCamera().Dolly(0.4)  # samples are nearer to each other than pixel
 
 
 def moved():
-    """Return the picture of a moving camera, when it is complete."""
-    view.SMProxy.InteractiveRender()
-    while session.information(display)["completed"] < 1.0:
-        view.SMProxy.InteractiveRender()
-    data = vtkUnsignedCharArray()
-    window = view.SMProxy.GetRenderWindow()
-    width, height = window.GetSize()
-    window.GetRGBACharPixelData(0, 0, width - 1, height - 1, 1, data)
-    return vtk_to_numpy(data).reshape(height, width, 4)[:, :, :3].astype(int)
+    return session.moving_picture(view, display)
 
 
 def levels():

@@ -14,7 +14,11 @@ import sys
 import numpy
 from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
+from vtkmodules.vtkCommonCore import (
+    vtkOutputWindow,
+    vtkStringOutputWindow,
+    vtkUnsignedCharArray,
+)
 from vtkmodules.vtkIOImage import vtkPNGReader
 
 BUILD = pathlib.Path(sys.argv[1])
@@ -150,6 +154,18 @@ def read_png(path):
     width, height, _ = image.GetDimensions()
     pixels = vtk_to_numpy(image.GetPointData().GetScalars())
     return pixels.reshape(height, width, -1)[:, :, :3].astype(int)
+
+
+def moving_picture(view, display):
+    """Return the pixels that a moving camera draws, when they are complete, as `read_png` does."""
+    view.SMProxy.InteractiveRender()
+    while information(display)["completed"] < 1.0:
+        view.SMProxy.InteractiveRender()
+    data = vtkUnsignedCharArray()
+    window = view.SMProxy.GetRenderWindow()
+    width, height = window.GetSize()
+    window.GetRGBACharPixelData(0, 0, width - 1, height - 1, 1, data)
+    return vtk_to_numpy(data).reshape(height, width, 4)[:, :, :3].astype(int)
 
 
 def covered(pixels):

@@ -8,8 +8,6 @@ has all. LODThreshold does not matter, as it does not for ParaView's Volume.
 import numpy
 import session
 from paraview import simple
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 
 view = session.start([400, 304])  # all reductions divide it
 wavelet = session.make_wavelet(32)
@@ -19,15 +17,7 @@ still = session.screenshot(view, "turning_still.png")
 
 
 def moved():
-    """Return the picture of a moving camera, when it is complete."""
-    view.SMProxy.InteractiveRender()
-    while session.information(display)["completed"] < 1.0:
-        view.SMProxy.InteractiveRender()
-    data = vtkUnsignedCharArray()
-    window = view.SMProxy.GetRenderWindow()
-    width, height = window.GetSize()
-    window.GetRGBACharPixelData(0, 0, width - 1, height - 1, 1, data)
-    return vtk_to_numpy(data).reshape(height, width, 4)[:, :, :3].astype(int)
+    return session.moving_picture(view, display)
 
 
 def pixels_per_side(picture):
